@@ -1,0 +1,91 @@
+#pragma once
+// What a host tells the library about one view: camera, lights, shadowmap views. Plain data with working defaults.
+//
+// Conventions: right-handed world in metres, column vectors, column-major matrices named destination-from-source. All
+// positions of one frame are relative to one origin that the host chooses per frame (a float step at 16 km is 2 mm, so
+// keep the origin near the camera in large worlds). Vulkan clip space.
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+namespace gnomon {
+
+inline constexpr std::uint32_t kNoShadowViews = 0xFFFFFFFFu;
+
+enum class DeviceDepth : std::uint8_t {
+    ReversedZ,  ///< 1 at the near plane, 0 at the far plane or at infinity.
+    StandardZ,  ///< 0 at the near plane, 1 at the far plane or at infinity.
+};
+
+/// A camera. Perspective or orthographic, finite or infinite far plane, off-centre and jittered projections are fine;
+/// sheared ones are not. Pixels whose device depth is exactly the far value are background.
+struct Camera {
+    /// Rigid: a rotation and a translation, nothing else (checked to 1e-3).
+    float viewFromWorld[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    /// The very matrix the depth buffer was drawn with, jitter included. The view may look down its -z or its +z axis.
+    float clipFromView[16] = {};
+    DeviceDepth deviceDepth = DeviceDepth::ReversedZ;
+};
+
+enum class LightType : std::uint8_t { Point, Spot, Directional };
+
+/// One light. All of the scene's lights may be given; the library culls.
+struct Light {
+    LightType type = LightType::Point;
+    /// Bit mask; the light reaches a receiver iff (mask & receiver mask) != 0.
+    std::uint8_t mask = 0xFF;
+    /// Metres, relative to the frame's origin. Ignored for directional lights.
+    float position[3] = {0, 0, 0};
+    /// From the light into the scene; normalised by the library. Ignored for point lights.
+    float direction[3] = {0, 0, -1};
+    /// Metres; the light has no influence beyond. 0: derived from `intensity` as the distance at which an unshadowed
+    /// surface facing the light receives PrepareDesc::rangeCutoffLux. Ignored for directional lights.
+    float rangeMetres = 0.0f;
+    /// Candela (lux for directional lights). Used for a missing range and for the choice among too many lights only.
+    float intensity = 1.0f;
+    /// Spot: half-angle of the cone in radians, above 0 and below pi/2 (checked: at most 1.55).
+    float outerConeAngle = 0.785398163f;
+    /// Radius of the source in metres; directional lights: angular radius in radians. Drives the penumbra.
+    float sourceRadius = 0.0f;
+    /// The light fades from full at fadeStart to nothing at fadeEnd metres between camera and light. Ignored for
+    /// directional lights.
+    float fadeStartMetres = std::numeric_limits<float>::infinity();
+    float fadeEndMetres = std::numeric_limits<float>::infinity();
+    /// Likewise its shadow; beyond the end the light casts none.
+    float shadowFadeStartMetres = std::numeric_limits<float>::infinity();
+    float shadowFadeEndMetres = std::numeric_limits<float>::infinity();
+    /// Depth bias in metres. Source: the paper, section 4.2, uses 2 mm.
+    float biasMetres = 0.002f;
+    /// Multiplies the light's importance where more than 1024 lights compete.
+    float priority = 1.0f;
+    /// Index of the light's first ShadowView (point lights: of six in a row, +X -X +Y -Y +Z -Z), or kNoShadowViews for a
+    /// light that casts no shadow. Directional lights cast none yet.
+    std::uint32_t firstShadowView = kNoShadowViews;
+};
+
+/// One view of a light, drawn by the host into a rectangle of one of its shadow atlases (D32 or D16, any age).
+/// A spot needs one view that holds its cone; a point light six, of 90 degrees or a little more: where the rectangle
+/// reaches a few texels beyond 90 degrees, filters are seamless across faces.
+struct ShadowView {
+    float clipFromWorld[16] = {};
+    std::uint32_t atlas = 0;  ///< 0 to 3
+    std::uint32_t layer = 0;
+    std::uint32_t xPx = 0, yPx = 0;          ///< first pixel of the rectangle
+    std::uint32_t widthPx = 0, heightPx = 0;  ///< at least 8 each
+    float nearMetres = 0.05f;
+    float farMetres = std::numeric_limits<float>::infinity();  ///< infinity allowed for perspective views
+    bool orthographic = false;
+    DeviceDepth deviceDepth = DeviceDepth::ReversedZ;
+};
+
+/// What phase 1 needs of one frame and view.
+struct ViewInput {
+    Camera camera;
+    std::uint32_t widthPx = 0, heightPx = 0;          ///< active extent, at least 1x1
+    std::uint32_t viewportXPx = 0, viewportYPx = 0;  ///< where it begins in the host's images
+    std::span<const Light> lights;
+    std::uint32_t shadowViewCount = 0;  ///< lights may refer to views below this
+};
+
+}  // namespace gnomon

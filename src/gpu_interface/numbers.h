@@ -1,0 +1,147 @@
+// Every number that the CPU and the shaders both rely on, once. Compiled as C++ and as GLSL.
+//
+// Source: Fatnassi 2023, "Shadow Techniques from Final Fantasy XVI", sections 2.1 to 2.4 and the glossary.
+// The consequence noted beside a number is for 3840x2160.
+#ifndef GNOMON_GPU_INTERFACE_NUMBERS_H
+#define GNOMON_GPU_INTERFACE_NUMBERS_H
+
+#ifdef __cplusplus
+#include <cstdint>
+#define GNOMON_CONSTANT inline constexpr
+#define GNOMON_UINT std::uint32_t
+namespace gnomon::gpu {
+#else
+#define GNOMON_CONSTANT const
+#define GNOMON_UINT uint
+#endif
+
+// --- Tiles -----------------------------------------------------------------------------------------------------------
+// One work unit of phases 3 and 4, one lane per pixel: 480x270 = 129,600 tiles.
+GNOMON_CONSTANT GNOMON_UINT kShadowTileSizePx = 8u;
+// One work unit of phase 2, one lane per shadow tile: 60x34 = 2,040 groups of 64x64 pixels.
+GNOMON_CONSTANT GNOMON_UINT kTileGroupSizeTiles = 8u;
+GNOMON_CONSTANT GNOMON_UINT kTileGroupSizePx = kShadowTileSizePx * kTileGroupSizeTiles;
+// Granularity of the CPU's light masks: 120x68 = 8,160 entries.
+GNOMON_CONSTANT GNOMON_UINT kMaskTileSizePx = 32u;
+// Every work group is 64x1x1, lanes in Morton order over 8x8.
+GNOMON_CONSTANT GNOMON_UINT kWorkGroupSize = 64u;
+// Widest and highest extent accepted.
+GNOMON_CONSTANT GNOMON_UINT kMaxExtentPx = 16384u;
+
+// --- Lights ----------------------------------------------------------------------------------------------------------
+GNOMON_CONSTANT GNOMON_UINT kMaxLightsPerView = 1024u;  // a light index has 10 bits
+GNOMON_CONSTANT GNOMON_UINT kLightIndexBits = 10u;
+GNOMON_CONSTANT GNOMON_UINT kLightGroupSize = 32u;  // lights per mask word
+GNOMON_CONSTANT GNOMON_UINT kLightGroupCount = kMaxLightsPerView / kLightGroupSize;
+// A light mask entry: one word with a bit per light group, then one word per light group: 132 bytes.
+GNOMON_CONSTANT GNOMON_UINT kLightMaskEntryWords = 1u + kLightGroupCount;
+GNOMON_CONSTANT GNOMON_UINT kZBinCount = 1024u;
+// Standard entries first, then ranged ones: 8 KiB.
+GNOMON_CONSTANT GNOMON_UINT kZBinWords = 2u * kZBinCount;
+// A zBin without lights: minimum 0xFFFF above maximum 0.
+GNOMON_CONSTANT GNOMON_UINT kZBinEmpty = 0x0000FFFFu;
+
+// --- Lists and visibility slots --------------------------------------------------------------------------------------
+// Early list space is given out in whole words, so list SlotIDs are multiples of three.
+GNOMON_CONSTANT GNOMON_UINT kEarlyIndicesPerWord = 3u;
+GNOMON_CONSTANT GNOMON_UINT kVisibilitySlotWords = 16u;  // 64 pixels x 8 bits
+GNOMON_CONSTANT GNOMON_UINT kDefaultListEntriesPerTile = 8u;
+GNOMON_CONSTANT GNOMON_UINT kDefaultVisibilitySlotsPerTile = 8u;
+// Flags that stand in place of a 22-bit VisibilitySlotID. Slots are below the lowest of them.
+GNOMON_CONSTANT GNOMON_UINT kSlotAllLit = 0x3FFFFFu;
+GNOMON_CONSTANT GNOMON_UINT kSlotAllUnlit = 0x3FFFFEu;
+GNOMON_CONSTANT GNOMON_UINT kSlotEvaluate = 0x3FFFFDu;
+GNOMON_CONSTANT GNOMON_UINT kMaxVisibilitySlots = kSlotEvaluate;
+// Tile Light SlotID of a tile that got no list space.
+GNOMON_CONSTANT GNOMON_UINT kNoListSpace = 0xFFFFFFFFu;
+// Tiles to be shaded with evaluation form rows of this many work groups in the indirect dispatch.
+GNOMON_CONSTANT GNOMON_UINT kEvaluateRowTiles = 1024u;
+
+// --- Light types and flags -------------------------------------------------------------------------------------------
+GNOMON_CONSTANT GNOMON_UINT kLightPoint = 0u;
+GNOMON_CONSTANT GNOMON_UINT kLightSpot = 1u;
+GNOMON_CONSTANT GNOMON_UINT kLightDirectional = 2u;
+GNOMON_CONSTANT GNOMON_UINT kLightTypeMask = 3u;
+GNOMON_CONSTANT GNOMON_UINT kLightCastsBit = 4u;
+// shadowView of a light that casts no shadow.
+GNOMON_CONSTANT GNOMON_UINT kNoShadowView = 0xFFFFFFFFu;
+GNOMON_CONSTANT GNOMON_UINT kPointLightFaces = 6u;
+
+// --- Shadowmaps ------------------------------------------------------------------------------------------------------
+GNOMON_CONSTANT GNOMON_UINT kMaxShadowAtlases = 4u;
+GNOMON_CONSTANT GNOMON_UINT kShadowViewOrthographicBit = 1u;
+GNOMON_CONSTANT GNOMON_UINT kShadowViewReversedZBit = 2u;
+GNOMON_CONSTANT GNOMON_UINT kMaxPcfRadius = 3u;
+// Smallest side of a shadow view's rectangle: the widest PCF kernel must fit.
+GNOMON_CONSTANT GNOMON_UINT kMinShadowViewSizePx = 2u * kMaxPcfRadius + 2u;
+
+// --- Visibility providers --------------------------------------------------------------------------------------------
+GNOMON_CONSTANT GNOMON_UINT kProviderHard = 0u;
+GNOMON_CONSTANT GNOMON_UINT kProviderPcf = 1u;
+GNOMON_CONSTANT GNOMON_UINT kProviderOff = 2u;  // every light lit everywhere: the price of the lists alone
+
+// --- Frame flags -----------------------------------------------------------------------------------------------------
+GNOMON_CONSTANT GNOMON_UINT kFrameOrthographicBit = 1u;
+GNOMON_CONSTANT GNOMON_UINT kFrameFaceNormalsBit = 2u;    // the host has face normals; else derived from depth
+GNOMON_CONSTANT GNOMON_UINT kFrameReceiverFlagsBit = 4u;  // the host has receiver flags; else mask 0xFF, no subsurface
+GNOMON_CONSTANT GNOMON_UINT kFrameFacingCullBit = 8u;     // phase 3 drops lights that every pixel faces away from
+
+// Receiver flags: R8G8_UINT, red = receiver mask, green = these bits.
+GNOMON_CONSTANT GNOMON_UINT kReceiverSubsurfaceBit = 1u;
+
+// --- How list space is reserved --------------------------------------------------------------------------------------
+GNOMON_CONSTANT GNOMON_UINT kReserveApproximate = 0u;  // the paper: by phase 2, from the approximate count
+GNOMON_CONSTANT GNOMON_UINT kReserveAccurate = 1u;     // by phase 3, from the exact count
+GNOMON_CONSTANT GNOMON_UINT kReserveFixed = 2u;        // debugging: a fixed number of entries per tile
+
+// --- Per-tile count words --------------------------------------------------------------------------------------------
+// Early count: number of lights in the low bits, and above how many of them cast shadows.
+GNOMON_CONSTANT GNOMON_UINT kEarlyCountMask = 0x7FFu;
+GNOMON_CONSTANT GNOMON_UINT kEarlyCastingShift = 16u;
+// Final count: number of entries, and this bit where the tile must be shaded with evaluation.
+GNOMON_CONSTANT GNOMON_UINT kFinalCountMask = 0x7FFu;
+GNOMON_CONSTANT GNOMON_UINT kFinalEvaluateBit = 0x80000000u;
+
+// --- Specialization constants ----------------------------------------------------------------------------------------
+GNOMON_CONSTANT GNOMON_UINT kSpecSubgroupSize = 0u;      // 4, 8, 32 or 64; other powers of two up to 128 work
+GNOMON_CONSTANT GNOMON_UINT kSpecProvider = 1u;          // kProviderHard ...
+GNOMON_CONSTANT GNOMON_UINT kSpecListReservation = 2u;   // kReserveApproximate ...
+GNOMON_CONSTANT GNOMON_UINT kSpecPcfRadius = 3u;         // texels, 1 to kMaxPcfRadius
+GNOMON_CONSTANT GNOMON_UINT kSpecHostDepthPyramid = 4u;  // 1: tile depth ranges come from the host's own pyramid
+GNOMON_CONSTANT GNOMON_UINT kSpecFirstFree = 16u;        // a host's own constants start here
+
+// --- Descriptor bindings ---------------------------------------------------------------------------------------------
+// Set of the lists: everything a lighting shader needs. No shadowmap is in it.
+GNOMON_CONSTANT GNOMON_UINT kBindFrame = 0u;
+GNOMON_CONSTANT GNOMON_UINT kBindLights = 1u;
+GNOMON_CONSTANT GNOMON_UINT kBindZBins = 2u;
+GNOMON_CONSTANT GNOMON_UINT kBindTileLightMasks = 3u;
+GNOMON_CONSTANT GNOMON_UINT kBindTileGroupLightMasks = 4u;
+GNOMON_CONSTANT GNOMON_UINT kBindTileDepthRanges = 5u;
+GNOMON_CONSTANT GNOMON_UINT kBindTileLightSlotIds = 6u;
+GNOMON_CONSTANT GNOMON_UINT kBindApproximateCounts = 7u;
+GNOMON_CONSTANT GNOMON_UINT kBindEarlyList = 8u;
+GNOMON_CONSTANT GNOMON_UINT kBindEarlyCounts = 9u;
+GNOMON_CONSTANT GNOMON_UINT kBindFinalList = 10u;
+GNOMON_CONSTANT GNOMON_UINT kBindFinalCounts = 11u;
+GNOMON_CONSTANT GNOMON_UINT kBindVisibility = 12u;
+GNOMON_CONSTANT GNOMON_UINT kBindEvaluateTiles = 13u;
+GNOMON_CONSTANT GNOMON_UINT kBindCounters = 14u;
+GNOMON_CONSTANT GNOMON_UINT kListsBindingCount = 15u;
+// Set of the receivers: the host's depth and, where it has them, face normals, receiver flags and a depth pyramid.
+GNOMON_CONSTANT GNOMON_UINT kBindDepth = 0u;
+GNOMON_CONSTANT GNOMON_UINT kBindFaceNormals = 1u;
+GNOMON_CONSTANT GNOMON_UINT kBindReceiverFlags = 2u;
+GNOMON_CONSTANT GNOMON_UINT kBindHostDepthPyramid = 3u;
+GNOMON_CONSTANT GNOMON_UINT kReceiversBindingCount = 4u;
+// Set of the shadowmaps: bound only where shadows are evaluated.
+GNOMON_CONSTANT GNOMON_UINT kBindShadowViews = 0u;
+GNOMON_CONSTANT GNOMON_UINT kBindShadowAtlas0 = 1u;  // and the next kMaxShadowAtlases - 1
+GNOMON_CONSTANT GNOMON_UINT kShadowmapsBindingCount = 1u + kMaxShadowAtlases;
+
+#ifdef __cplusplus
+}  // namespace gnomon::gpu
+#endif
+#undef GNOMON_CONSTANT
+#undef GNOMON_UINT
+#endif  // GNOMON_GPU_INTERFACE_NUMBERS_H

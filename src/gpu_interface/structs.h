@@ -1,0 +1,118 @@
+// Every structure that crosses from the CPU to the shaders, once. Compiled as C++ and as GLSL.
+//
+// Layout: std430 for arrays in storage buffers, std140 for the frame's uniform buffer; members are ordered so that both
+// agree with C++ (every vec3 is followed by a scalar). Sizes are asserted here, offsets compared with the compiled
+// shaders by a test.
+#ifndef GNOMON_GPU_INTERFACE_STRUCTS_H
+#define GNOMON_GPU_INTERFACE_STRUCTS_H
+
+#ifdef __cplusplus
+#include <cstddef>
+#include <cstdint>
+namespace gnomon::gpu {
+using uint = std::uint32_t;
+struct vec2 {
+    float x, y;
+};
+struct vec3 {
+    float x, y, z;
+};
+struct vec4 {
+    float x, y, z, w;
+};
+struct uvec4 {
+    uint x, y, z, w;
+};
+struct mat4 {
+    vec4 column[4];
+};
+#endif
+
+// One visible light in sorted order. Directional lights come first, then the others by nearest view depth.
+// View space here is (right, up, view depth): z is the positive distance along the view axis.
+struct GpuLight {
+    vec3 positionWs;     // metres, relative to the frame's origin; 0 for directional lights
+    float rangeMetres;   // no influence beyond; 3.0e38 for directional lights
+    vec3 directionWs;    // unit, from the light into the scene (spot axis, directional light's travel); 0 for points
+    float cosOuter;      // spot: cosine of the half-angle of the cone; else -2
+    vec3 positionVs;     // metres
+    float sinOuter;      // spot: sine of the half-angle; else 0
+    vec3 directionVs;    // unit
+    float sourceRadius;  // metres; directional: angular radius in radians
+    uint typeAndFlags;   // kLightPoint ..., kLightCastsBit
+    uint lightMask;      // low 8 bits; the light reaches a receiver iff (lightMask & receiverMask) != 0
+    uint shadowView;     // first shadow view (points: of six, +X -X +Y -Y +Z -Z), or kNoShadowView
+    uint hostIndex;      // index into the light array that the host gave
+    float lightFade;     // above 0 to 1, multiplies the light
+    float shadowFade;    // 0..1, visibility = 1 - shadowFade * (1 - visibility)
+    float biasMetres;    // depth bias of this light
+    float reserved;
+};
+
+// One shadowmap view: a perspective or orthographic frustum drawn into a rectangle of an atlas layer.
+struct GpuShadowView {
+    mat4 clipFromWorld;
+    vec2 pxFromNdcScale;  // atlas pixel = ndc.xy * scale + offset
+    vec2 pxFromNdcOffset;
+    vec2 rectMinPx;          // the rectangle's first pixel
+    vec2 rectMaxPx;          // one past its last pixel
+    float depthFromLinearA;  // perspective: device depth = A + B / linear depth; orthographic: A + B * linear depth
+    float depthFromLinearB;
+    uint flags;             // kShadowViewOrthographicBit, kShadowViewReversedZBit
+    uint atlasAndLayer;     // atlas in the low 8 bits, layer above
+    float texelMetres;      // size of a texel: at linear depth 1 m (perspective) or anywhere (orthographic)
+    float atlasPerTexelX;   // 1 / atlas width
+    float atlasPerTexelY;   // 1 / atlas height
+    float reserved;
+};
+
+// Constants of one frame and view.
+struct GpuFrame {
+    vec4 eyeWs;    // camera position, origin-relative metres; w: device depth of background
+    vec4 axisXWs;  // unit axes of the view in the world: right,
+    vec4 axisYWs;  // up,
+    vec4 axisZWs;  // and into the scene
+    vec4 viewXyFromPixel;      // xy scale, zw offset: view xy (at depth 1 if perspective) = pixel * scale + offset
+    vec4 viewDepthFromDevice;  // view depth = (x * d + y) / (z * d + w)
+    vec4 zBins;                // x near depth, y bins per metre, z farthest reach of a light, w largest |coordinate|
+    uvec4 extent;              // xy active extent in pixels, zw offset of the viewport in the host's images
+    uvec4 tileCounts;          // xy shadow tiles, zw tile groups
+    uvec4 lightCounts;         // x all lights, y directional lights, z mask tiles per row, w mask tile rows
+    uvec4 pools;               // x list entries, y visibility slots, z fixed entries per tile (debugging), w frame flags
+    vec4 shadows;              // x subsurface bias (m); yzw unused
+    uvec4 random;              // x frame number, low 32 bits; yzw unused
+};
+
+// What the passes count, written with atomics, cleared at the start of every frame.
+struct GpuCounters {
+    uint listEntries;                 // reserved, whether or not there was space
+    uint visibilitySlots;             // asked for, whether or not there was space
+    uint listOverflowTiles;           // tiles whose lights are walked in the group mask while lighting
+    uint slotOverflowEntries;         // entries flagged EVALUATE
+    uint accurateExceedsApproximate;  // tiles in which the invariant broke: must stay 0
+    uint tilesWithGeometry;           // this and the rest are summed by gather_statistics
+    uint approximateEntries;
+    uint earlyEntries;
+    uint earlyCastingEntries;
+    uint finalEntries;
+    uint finalSlotEntries;
+    uint maxLightsInTile;
+};
+
+// Head of the list of tiles to be shaded with evaluation; tile coordinates (y << 16 | x) follow.
+struct GpuEvaluateHead {
+    uint groupCountX;  // a VkDispatchIndirectCommand: kEvaluateRowTiles,
+    uint groupCountY;  // rows in use,
+    uint groupCountZ;  // 1
+    uint tileCount;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(GpuLight) == 96);
+static_assert(sizeof(GpuShadowView) == 128);
+static_assert(sizeof(GpuFrame) == 13 * 16);
+static_assert(sizeof(GpuCounters) == 48);
+static_assert(sizeof(GpuEvaluateHead) == 16);
+}  // namespace gnomon::gpu
+#endif
+#endif  // GNOMON_GPU_INTERFACE_STRUCTS_H

@@ -42,7 +42,8 @@ enum class ListReservation : std::uint8_t {
 };
 
 /// The device, and the variant of the pipelines. Needs Vulkan 1.3 with synchronization2, and computeFullSubgroups and
-/// subgroupSizeControl enabled (subgroup operations: basic, vote, arithmetic, ballot); for sync::debugLabels
+/// subgroupSizeControl enabled (subgroup operations: basic, vote, arithmetic, ballot);
+/// for debugLabels
 /// VK_EXT_debug_utils on the instance.
 struct ContextDesc {
     VkInstance instance = VK_NULL_HANDLE;
@@ -54,7 +55,7 @@ struct ContextDesc {
     /// async compute queue (buffers are then shared concurrently, and no ownership transfer is needed).
     std::span<const std::uint32_t> queueFamilies;
     bool debugLabels = false;
-    /// 0: the device's own choice. Else 4, 8, 16, 32, 64 or 128, which the device must support.
+    /// 0: the device's own choice. Else 4, 8, 16, 32 or 64, which the device must support.
     std::uint32_t subgroupSize = 0;
     Filter filter = Filter::Pcf;
     std::uint32_t pcfRadius = 1;  ///< texels, 1 to 3
@@ -100,6 +101,9 @@ struct ViewDesc {
     std::uint32_t maxShadowViews = 4096;
     bool timestamps = true;  ///< GPU times of every pass in the statistics (needs a queue with timestamps)
     bool statistics = true;  ///< the means over tiles (one small extra pass)
+    /// Testing: bytes that are left free before and after the contents of every device buffer, and are never written.
+    /// A multiple of 256; buffer() then returns buffers whose contents begin at this offset.
+    std::uint32_t guardBytes = 0;
     PrepareDesc prepare;     ///< its extent is set from this one
 };
 
@@ -209,7 +213,7 @@ public:
     [[nodiscard]] VkExtent2D tileCounts() const noexcept;
     /// VkDispatchIndirectCommand of the second lighting pipeline.
     [[nodiscard]] VkBuffer evaluateTilesBuffer() const noexcept;
-    static constexpr VkDeviceSize kEvaluateCommandOffset = 0;
+    [[nodiscard]] VkDeviceSize evaluateCommandOffset() const noexcept;
 
     /// Statistics of a frame that the host knows to have finished: one of the last framesInFlight frames begun. Never
     /// waits. False if the frame is not among them or had no recordEndFrame().

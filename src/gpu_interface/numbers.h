@@ -103,7 +103,7 @@ GNOMON_CONSTANT GNOMON_UINT kFinalCountMask = 0x7FFu;
 GNOMON_CONSTANT GNOMON_UINT kFinalEvaluateBit = 0x80000000u;
 
 // --- Specialization constants ----------------------------------------------------------------------------------------
-GNOMON_CONSTANT GNOMON_UINT kSpecSubgroupSize = 0u;      // 4, 8, 32 or 64; other powers of two up to 128 work
+GNOMON_CONSTANT GNOMON_UINT kSpecSubgroupSize = 0u;      // 4, 8, 16, 32 or 64
 GNOMON_CONSTANT GNOMON_UINT kSpecProvider = 1u;          // kProviderHard ...
 GNOMON_CONSTANT GNOMON_UINT kSpecListReservation = 2u;   // kReserveApproximate ...
 GNOMON_CONSTANT GNOMON_UINT kSpecPcfRadius = 3u;         // texels, 1 to kMaxPcfRadius
@@ -137,7 +137,8 @@ GNOMON_CONSTANT GNOMON_UINT kReceiversBindingCount = 4u;
 // Set of the shadowmaps: bound only where shadows are evaluated.
 GNOMON_CONSTANT GNOMON_UINT kBindShadowViews = 0u;
 GNOMON_CONSTANT GNOMON_UINT kBindShadowAtlas0 = 1u;  // and the next kMaxShadowAtlases - 1
-GNOMON_CONSTANT GNOMON_UINT kShadowmapsBindingCount = 1u + kMaxShadowAtlases;
+GNOMON_CONSTANT GNOMON_UINT kBindShadowSampler = kBindShadowAtlas0 + kMaxShadowAtlases;  // nearest, clamped
+GNOMON_CONSTANT GNOMON_UINT kShadowmapsBindingCount = kBindShadowSampler + 1u;
 
 #ifdef __cplusplus
 }  // namespace gnomon::gpu

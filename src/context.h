@@ -1,0 +1,31 @@
+#pragma once
+// What a Context holds.
+
+#include <vector>
+
+#include "gnomon/tiled_shadows.h"
+#include "passes.h"
+#include "vulkan/resources.h"
+
+namespace gnomon {
+
+inline constexpr std::uint32_t kSpecializationCount = 5;
+
+struct Context::State {
+    DeviceContext device;
+    ContextDesc desc;
+    std::uint32_t subgroupSize = 0;
+    bool requireSubgroupSize = false;  // pipelines ask for it; else the device has no other
+    std::uint32_t specialization[kSpecializationCount] = {};
+    float timestampPeriodNs = 0.0f;  // 0: no timestamps
+    VkDescriptorSetLayout listsLayout = VK_NULL_HANDLE;
+    VkDescriptorSetLayout receiversLayout = VK_NULL_HANDLE;
+    VkDescriptorSetLayout shadowmapsLayout = VK_NULL_HANDLE;
+    VkPipelineLayout pipelineLayout = VK_NULL_HANDLE;
+    VkPipeline pipelines[kPassCount] = {};
+    VkSampler shadowSampler = VK_NULL_HANDLE;
+
+    ~State();
+};
+
+}  // namespace gnomon

@@ -1,0 +1,129 @@
+#version 460
+// Phase 3, Find Lights Accurate: which lights reach at least one pixel of a shadow tile.
+//
+// Problem: the froxel tests and the sharing of one mask by 64 tiles leave lights that reach no pixel of the tile; each
+// would cost a full shadow evaluation in phase 4.
+// Source: the paper, section 2.3, listing 3, corrected (the packed word of entry e is e / 3).
+// Plain way: one lane per pixel, a vote and a list append per light.
+// Here: every lane collects a word of 32 answers, a subgroup ORs them, and subgroups meet in shared memory once per word
+// instead of once per light. The list is written at the end by all lanes from the 32 words: ascending light index, so its
+// order never depends on the order of execution.
+// Memory safety: with the paper's reservation the space is the tile's approximate count. Lights that the tile's own mask
+// and zBins reject are skipped, the froxel tests are conservative against lightReaches(), and a tile that still exceeded
+// its space would be marked as one without list space, so that no light is lost; a counter records it and must stay 0.
+#extension GL_GOOGLE_include_directive : require
+#define GNOMON_LISTS_ACCESS
+#include "vulkan/work_group.glsl"
+#include "shading/candidates.glsl"
+#include "shading/light_tests.glsl"
+#include "shading/receiver.glsl"
+
+layout(constant_id = 2) const uint kListReservation = kReserveApproximate;
+
+shared uint tileWords[kLightGroupCount];
+shared uint castingWords[kLightGroupCount];
+shared uint tileSlotId;
+
+void testLights(Receiver receiver, Candidates candidates, uint groupMaskBase) {
+    bool cullFacing = (frame.pools.w & kFrameFacingCullBit) != 0u && !receiver.subsurface;
+    uint groups = candidates.groupBits & tileGroupLightMasks[groupMaskBase];
+    while (groups != 0u) {
+        uint group = findLSB(groups);
+        groups &= groups - 1u;
+        uint bits = tileGroupLightMasks[groupMaskBase + 1u + group] & candidateWord(candidates, group);
+        uint found = 0u;
+        uint casting = 0u;
+        while (bits != 0u) {
+            uint bit = findLSB(bits);
+            bits &= bits - 1u;
+            GpuLight light = lights[group * kLightGroupSize + bit];
+            bool casts = lightCasts(light);
+            vec3 toLight;
+            bool reached = receiver.valid && lightReaches(light, receiver.positionWs, receiver.mask, toLight);
+            if (reached && casts && cullFacing) reached = facesLight(receiver.faceNormalWs, toLight);
+            found |= (reached ? 1u : 0u) << bit;
+            casting |= (casts ? 1u : 0u) << bit;
+        }
+        uint any = subgroupOr(found);
+        if (any != 0u && subgroupElect()) {
+            atomicOr(tileWords[group], any);
+            atomicOr(castingWords[group], any & casting);
+        }
+    }
+}
+
+// Light index of list entry `entry`: the entry-th set bit of the tile's words.
+uint lightOfEntry(uint entry) {
+    for (uint group = 0u; group < kLightGroupCount; ++group) {
+        uint word = tileWords[group];
+        uint count = bitCount(word);
+        if (entry < count) {
+            for (; entry > 0u; --entry) word &= word - 1u;
+            return group * kLightGroupSize + findLSB(word);
+        }
+        entry -= count;
+    }
+    return 0u;
+}
+
+// Space for this tile's `count` lights, or kNoListSpace. Called by one lane.
+uint reserve(uint tileIndex, uint count) {
+    uint capacity = approximateCounts[tileIndex];
+    if (kListReservation == kReserveAccurate) {
+        uint wanted = roundUpToEarlyWord(count);
+        uint slotId = wanted == 0u ? 0u : atomicAdd(counters.listEntries, wanted);
+        bool fits = slotId <= frame.pools.x && wanted <= frame.pools.x - slotId;
+        if (!fits) atomicAdd(counters.listOverflowTiles, 1u);
+        if (count > capacity) atomicAdd(counters.accurateExceedsApproximate, 1u);
+        return fits ? slotId : kNoListSpace;
+    }
+    uint slotId = tileLightSlotIds[tileIndex];
+    if (count > capacity) atomicAdd(counters.accurateExceedsApproximate, 1u);
+    if (kListReservation == kReserveFixed) capacity = roundUpToEarlyWord(frame.pools.z);
+    if (slotId != kNoListSpace && count > capacity) {
+        atomicAdd(counters.listOverflowTiles, 1u);
+        return kNoListSpace;
+    }
+    return slotId;
+}
+
+void main() {
+    uint lane = laneIndex();
+    uvec2 tile = gl_WorkGroupID.xy;
+    uint tileIndex = tileIndexOf(tile);
+    for (uint i = lane; i < kLightGroupCount; i += kWorkGroupSize) {
+        tileWords[i] = 0u;
+        castingWords[i] = 0u;
+    }
+    barrier();
+    vec2 depths = tileDepthRanges[tileIndex];
+    if (depths.x <= depths.y) {
+        Receiver receiver = receiverAt(tile * kShadowTileSizePx + laneCoordinates(lane));
+        Candidates candidates = candidatesOf(tile * kShadowTileSizePx, depths.x, depths.y);
+        testLights(receiver, candidates, tileGroupIndexOf(tile) * kLightMaskEntryWords);
+    }
+    barrier();
+
+    uint count = 0u;
+    uint casting = 0u;
+    for (uint group = 0u; group < kLightGroupCount; ++group) {
+        count += bitCount(tileWords[group]);
+        casting += bitCount(castingWords[group]);
+    }
+    if (lane == 0u) {
+        uint slotId = reserve(tileIndex, count);
+        tileSlotId = slotId;
+        tileLightSlotIds[tileIndex] = slotId;
+        earlyCounts[tileIndex] = slotId == kNoListSpace ? 0u : count | (casting << kEarlyCastingShift);
+    }
+    barrier();
+    if (tileSlotId == kNoListSpace) return;
+    for (uint word = lane; word * kEarlyIndicesPerWord < count; word += kWorkGroupSize) {
+        uint packed = 0u;
+        for (uint i = 0u; i < kEarlyIndicesPerWord; ++i) {
+            uint entry = word * kEarlyIndicesPerWord + i;
+            if (entry < count) packed |= lightOfEntry(entry) << (kLightIndexBits * i);
+        }
+        earlyList[tileSlotId / kEarlyIndicesPerWord + word] = packed;
+    }
+}

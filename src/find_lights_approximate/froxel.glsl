@@ -1,0 +1,93 @@
+// A froxel (a tile's screen rectangle between two depths) and its intersection tests with lights, in view space.
+//
+// Problem: discard, per tile and at the price of a few dozen instructions, most lights that reach none of its pixels,
+// and never one that does: phase 3 writes into the space that is reserved from these answers.
+// Source: the paper, section 2.2 (three tests); Wronski 2017, "Cull that cone!".
+// Floats: every comparison gives way by `margin`, which bounds the rounding of both this test and the per-pixel test
+// (positions of up to frame.zBins.w metres).
+#ifndef GNOMON_FIND_LIGHTS_APPROXIMATE_FROXEL_GLSL
+#define GNOMON_FIND_LIGHTS_APPROXIMATE_FROXEL_GLSL
+
+#include "shading/frame.glsl"
+#include "shading/light_tests.glsl"
+
+struct Froxel {
+    vec2 slopeMin;  // xy bounds at depth 1 (perspective) or at any depth (orthographic)
+    vec2 slopeMax;
+    vec3 boxMin;    // view-space bounds
+    vec3 boxMax;
+    float margin;   // metres
+};
+
+Froxel froxelOf(uvec2 tile, float nearDepth, float farDepth) {
+    Froxel f;
+    vec2 a = vec2(tile * kShadowTileSizePx) * frame.viewXyFromPixel.xy + frame.viewXyFromPixel.zw;
+    vec2 b = vec2((tile + 1u) * kShadowTileSizePx) * frame.viewXyFromPixel.xy + frame.viewXyFromPixel.zw;
+    f.slopeMin = min(a, b);
+    f.slopeMax = max(a, b);
+    // Lights end at zBins.z, so a froxel need not reach farther (a host's pyramid may give infinity).
+    float end = max(nearDepth, min(farDepth, frame.zBins.z));
+    vec2 boundsMin = f.slopeMin;
+    vec2 boundsMax = f.slopeMax;
+    if (!isOrthographic()) {
+        boundsMin = min(f.slopeMin * nearDepth, f.slopeMin * end);
+        boundsMax = max(f.slopeMax * nearDepth, f.slopeMax * end);
+    }
+    f.boxMin = vec3(boundsMin, nearDepth);
+    f.boxMax = vec3(boundsMax, end);
+    // 16 float steps of the largest coordinate: the chain from device depth to a distance rounds fewer times than that.
+    f.margin = 2e-6 * (frame.zBins.w + end + length(max(abs(boundsMin), abs(boundsMax))));
+    return f;
+}
+
+bool sphereOutside(Froxel f, vec3 centre, float radius) {
+    vec3 away = max(max(f.boxMin - centre, centre - f.boxMax), vec3(0.0));
+    float reach = radius + f.margin;
+    if (dot(away, away) > reach * reach) return true;
+    if (isOrthographic()) return false;
+    // Side planes through the eye.
+    vec2 above = (centre.xy - f.slopeMax * centre.z) * inversesqrt(1.0 + f.slopeMax * f.slopeMax);
+    vec2 below = (f.slopeMin * centre.z - centre.xy) * inversesqrt(1.0 + f.slopeMin * f.slopeMin);
+    return max(max(above.x, above.y), max(below.x, below.y)) > reach;
+}
+
+bool coneMissesSphere(GpuLight light, vec3 centre, float radius) {
+    vec3 v = centre - light.positionVs;
+    float along = dot(v, light.directionVs);
+    float across = sqrt(max(dot(v, v) - along * along, 0.0));
+    return light.cosOuter * across - along * light.sinOuter > radius || along < -radius ||
+           along > radius + light.rangeMetres;
+}
+
+// The froxel's corners against the pyramid around the cone, which is the spot's own clip space up to scale.
+bool pyramidMissesFroxel(GpuLight light, Froxel f) {
+    vec3 axis = light.directionVs;
+    vec3 helper = abs(axis.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
+    vec3 u = normalize(cross(axis, helper));
+    vec3 v = cross(axis, u);
+    vec4 least = vec4(3e38);  // how far outside each side the nearest corner is
+    float front = -3e38;
+    for (uint corner = 0u; corner < 8u; ++corner) {
+        bvec3 high = bvec3((corner & 1u) != 0u, (corner & 2u) != 0u, (corner & 4u) != 0u);
+        float z = high.z ? f.boxMax.z : f.boxMin.z;
+        vec2 slope = vec2(high.x ? f.slopeMax.x : f.slopeMin.x, high.y ? f.slopeMax.y : f.slopeMin.y);
+        vec3 q = vec3(isOrthographic() ? slope : slope * z, z) - light.positionVs;
+        float along = dot(q, axis);
+        vec2 side = vec2(dot(q, u), dot(q, v)) * light.cosOuter;
+        least = min(least, vec4(side, -side) - light.sinOuter * along);
+        front = max(front, along);
+    }
+    return max(max(least.x, least.y), max(least.z, least.w)) > f.margin || front < -f.margin;
+}
+
+bool lightMayReachFroxel(GpuLight light, Froxel f) {
+    uint type = lightType(light);
+    if (type == kLightDirectional) return true;
+    if (sphereOutside(f, light.positionVs, light.rangeMetres)) return false;
+    if (type == kLightPoint) return true;
+    vec3 centre = 0.5 * (f.boxMin + f.boxMax);
+    if (coneMissesSphere(light, centre, 0.5 * length(f.boxMax - f.boxMin) + f.margin)) return false;
+    return !pyramidMissesFroxel(light, f);
+}
+
+#endif

@@ -1,0 +1,143 @@
+#version 460
+// Phase 4, Generate Deferred Shadows: the visibility of every light of the early list from every pixel of a tile.
+//
+// Problem: evaluating shadows inside the lighting shader keeps its registers and the filter's alive together.
+// Source: the paper, section 2.4, listing 4. Wholly dark: nothing is written. Wholly lit: a flag. Else a slot of 64 bytes.
+// Plain way: light after light, two votes, one slot allocation and a byte store each.
+// Here: four lights at a time. A lane's four 8-bit visibilities form one word; AND and OR of those words over the tile
+// are the eight votes; one atomic takes all slots of the batch; and since four slots are 64 words, each lane gathers and
+// stores exactly one. Two barriers per four lights. Decisions are made on the quantised values.
+// Overflow: without a slot the entry says EVALUATE; without list space the tile has no entries. Such tiles go to the
+// indirect list of the second lighting pipeline, and nothing is lost.
+#extension GL_GOOGLE_include_directive : require
+#define GNOMON_LISTS_ACCESS
+#include "vulkan/work_group.glsl"
+#include "generate_shadows/visibility.glsl"
+
+const uint kBatch = 4u;
+
+shared uint packedVisibility[kWorkGroupSize];
+shared uint subgroupLit[kSubgroupCount];
+shared uint subgroupDark[kSubgroupCount];
+shared uint batchSlot;
+
+void appendEvaluateTile(uvec2 tile) {
+    uint i = atomicAdd(evaluateHead.tileCount, 1u);
+    if (i >= frame.tileCounts.x * frame.tileCounts.y) return;
+    evaluateTiles[i] = tile.y << 16u | tile.x;
+    atomicMax(evaluateHead.groupCountY, i / kEvaluateRowTiles + 1u);
+}
+
+uint earlyLight(uint slotId, uint entry) {
+    return unpackEarlyIndex(earlyList[earlyWordIndex(slotId, entry)], entry);
+}
+
+// One byte per light of the batch. Pixels that the light does not reach do not vote: all ones in `lit`, zeros in `dark`.
+void evaluateBatch(Receiver receiver, uint slotId, uint first, uint count, out uint stored, out uint lit, out uint dark) {
+    stored = 0u;
+    lit = 0xFFFFFFFFu;
+    dark = 0u;
+    for (uint i = 0u; i < count; ++i) {
+        GpuLight light = lights[earlyLight(slotId, first + i)];
+        vec3 toLight;
+        if (receiver.valid && lightReaches(light, receiver.positionWs, receiver.mask, toLight)) {
+            uint q = quantiseVisibility(evaluateVisibility(light, receiver, toLight));
+            stored |= q << (8u * i);
+            lit &= ~(0xFFu << (8u * i)) | (q << (8u * i));
+            dark |= q << (8u * i);
+        }
+    }
+}
+
+void combineVotes(inout uint lit, inout uint dark) {
+    for (uint i = 0u; i < kSubgroupCount; ++i) {
+        lit &= subgroupLit[i];
+        dark |= subgroupDark[i];
+    }
+}
+
+// The word of its slot that this lane stores: four lanes' bytes of light lane / 16.
+uint gatherWord(uint lane) {
+    uint shift = 8u * (lane / kVisibilitySlotWords);
+    uint pixel = (lane % kVisibilitySlotWords) * 4u;
+    uint word = 0u;
+    for (uint i = 0u; i < 4u; ++i) word |= (packedVisibility[pixel + i] >> shift & 0xFFu) << (8u * i);
+    return word;
+}
+
+// Which lights of the batch need a slot, and which are written at all, as bits.
+void classifyBatch(uint count, uint lit, uint dark, out uint slotBits, out uint writtenBits) {
+    slotBits = 0u;
+    writtenBits = 0u;
+    for (uint i = 0u; i < count; ++i) {
+        bool allDark = (dark >> (8u * i) & 0xFFu) == 0u;
+        bool allLit = (lit >> (8u * i) & 0xFFu) == 0xFFu;
+        writtenBits |= (allDark ? 0u : 1u) << i;
+        slotBits |= (allDark || allLit ? 0u : 1u) << i;
+    }
+}
+
+uint rankOf(uint bits, uint i) { return bitCount(bits & ((1u << i) - 1u)); }
+
+void main() {
+    uint lane = laneIndex();
+    uvec2 tile = gl_WorkGroupID.xy;
+    uint tileIndex = tileIndexOf(tile);
+    uint slotId = tileLightSlotIds[tileIndex];
+    if (slotId == kNoListSpace) {
+        if (lane == 0u) {
+            finalCounts[tileIndex] = kFinalEvaluateBit;
+            appendEvaluateTile(tile);
+        }
+        return;
+    }
+    uint earlyCount = earlyCounts[tileIndex] & kEarlyCountMask;
+    Receiver receiver = receiverAt(tile * kShadowTileSizePx + laneCoordinates(lane));
+    uint finalCount = 0u;
+    uint missing = 0u;
+    for (uint first = 0u; first < earlyCount; first += kBatch) {
+        uint count = min(kBatch, earlyCount - first);
+        uint stored, lit, dark;
+        evaluateBatch(receiver, slotId, first, count, stored, lit, dark);
+        lit = subgroupAnd(lit);
+        dark = subgroupOr(dark);
+        packedVisibility[lane] = stored;
+        if (kSubgroupCount > 1u && subgroupElect()) {
+            subgroupLit[gl_SubgroupID] = lit;
+            subgroupDark[gl_SubgroupID] = dark;
+        }
+        barrier();
+        if (kSubgroupCount > 1u) combineVotes(lit, dark);
+        uint slotBits, writtenBits;
+        classifyBatch(count, lit, dark, slotBits, writtenBits);
+        uint word = gatherWord(lane);
+        if (lane == 0u && slotBits != 0u) batchSlot = atomicAdd(counters.visibilitySlots, bitCount(slotBits));
+        barrier();
+
+        uint mine = lane / kVisibilitySlotWords;
+        if ((slotBits >> mine & 1u) != 0u) {
+            uint slot = batchSlot + rankOf(slotBits, mine);
+            if (slot < frame.pools.y) visibilityWords[slot * kVisibilitySlotWords + lane % kVisibilitySlotWords] = word;
+        }
+        if (lane < count && (writtenBits >> lane & 1u) != 0u) {
+            uint slot = kSlotAllLit;
+            if ((slotBits >> lane & 1u) != 0u) {
+                slot = batchSlot + rankOf(slotBits, lane);
+                if (slot >= frame.pools.y) slot = kSlotEvaluate;
+            }
+            finalList[slotId + finalCount + rankOf(writtenBits, lane)] =
+                packFinalEntry(earlyLight(slotId, first + lane), slot);
+        }
+        if (slotBits != 0u) {
+            uint end = batchSlot + bitCount(slotBits);
+            missing += end > frame.pools.y ? min(end - frame.pools.y, bitCount(slotBits)) : 0u;
+        }
+        finalCount += bitCount(writtenBits);
+    }
+    if (lane != 0u) return;
+    finalCounts[tileIndex] = finalCount | (missing != 0u ? kFinalEvaluateBit : 0u);
+    if (missing != 0u) {
+        atomicAdd(counters.slotOverflowEntries, missing);
+        appendEvaluateTile(tile);
+    }
+}

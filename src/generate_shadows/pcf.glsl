@@ -1,0 +1,27 @@
+// Visibility provider "pcf": percentage closer filtering, (2r + 1)^2 bilinear comparisons.
+//
+// Source: Reeves, Salesin, Cook 1987, "Rendering Antialiased Shadows with Depth Maps".
+// Plain way: (2r + 1)^2 hardware comparisons with bilinear filtering, whose weights are a driver's own 8-bit ones.
+// Here: their sum is a weighted sum over (2r + 2)^2 texels with weight 1 - f at the first row and column, f at the last
+// and 1 between. (r + 1)^2 gathers fetch them, and the weights are exact, so that every pipeline and device agrees.
+float pcfVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
+    ShadowPoint s = shadowPointOf(light, receiver, toLight, float(kPcfRadius));
+    if (!s.inFront) return 1.0;
+    precise vec2 corner = s.px - (0.5 + float(kPcfRadius));
+    precise vec2 first = floor(corner);
+    precise vec2 f = corner - first;
+    precise float sum = 0.0;
+    for (uint j = 0u; j <= kPcfRadius; ++j) {
+        precise float top = j == 0u ? 1.0 - f.y : 1.0;
+        precise float bottom = j == kPcfRadius ? f.y : 1.0;
+        for (uint i = 0u; i <= kPcfRadius; ++i) {
+            precise float left = i == 0u ? 1.0 - f.x : 1.0;
+            precise float right = i == kPcfRadius ? f.x : 1.0;
+            vec4 lit = litBy(s, gatherShadowTexels(s, ivec2(first) + 2 * ivec2(i, j)));
+            sum += bottom * (left * lit.x + right * lit.y) + top * (right * lit.z + left * lit.w);
+        }
+    }
+    const float taps = float((2u * kPcfRadius + 1u) * (2u * kPcfRadius + 1u));
+    precise float visibility = sum / taps;
+    return visibility;
+}

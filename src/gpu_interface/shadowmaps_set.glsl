@@ -1,0 +1,25 @@
+// The set of the shadowmaps: the table of shadow views and the host's atlases. Only pipelines that evaluate shadows
+// have it; the main lighting pipeline does not (paper, section 2: that is where its registers are saved).
+#ifndef GNOMON_GPU_INTERFACE_SHADOWMAPS_SET_GLSL
+#define GNOMON_GPU_INTERFACE_SHADOWMAPS_SET_GLSL
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "gpu_interface/numbers.h"
+#include "gpu_interface/structs.h"
+
+#ifndef GNOMON_SHADOWMAPS_SET
+#define GNOMON_SHADOWMAPS_SET 2
+#endif
+
+layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowViews, std430) restrict readonly buffer ShadowViewsBlock {
+    GpuShadowView shadowViews[];
+};
+// One binding each: arrays of images indexed at run time need features that software Vulkan lacks.
+layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowAtlas0) uniform texture2DArray shadowAtlas0;
+layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowAtlas0 + 1) uniform texture2DArray shadowAtlas1;
+layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowAtlas0 + 2) uniform texture2DArray shadowAtlas2;
+layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowAtlas0 + 3) uniform texture2DArray shadowAtlas3;
+layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowSampler) uniform sampler shadowSampler;
+
+#endif

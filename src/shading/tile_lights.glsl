@@ -1,0 +1,58 @@
+// For the host's deferred lighting shader: walk the final light list of a pixel's shadow tile.
+//
+// The main lighting pipeline, one work group of 64 lanes per shadow tile (or any other shape):
+//
+//     TileLights tile = tileLightsAt(pixel);
+//     if (tile.evaluate) return;                        // the second pipeline shades this tile
+//     for (uint i = 0u; i < tile.count; ++i) {
+//         uint entry = tileLightEntry(tile, i);
+//         GpuLight light = lights[finalLightIndex(entry)];
+//         vec3 toLight;
+//         if (!lightReaches(light, positionWs, receiverMask, toLight)) continue;
+//         float visibility = storedVisibility(entry, pixel);
+//         ... light.lightFade, the host's own light data at light.hostIndex, its own factor (cookie, cloud) ...
+//     }
+//
+// Needs the set of the lists alone. The second pipeline: shading/evaluate_lights.glsl.
+// Source: the paper, sections 2.4.1 and 2.4.2.
+#ifndef GNOMON_SHADING_TILE_LIGHTS_GLSL
+#define GNOMON_SHADING_TILE_LIGHTS_GLSL
+
+#include "shading/frame.glsl"
+#include "shading/light_tests.glsl"
+#include "shading/stored_visibility.glsl"
+
+struct TileLights {
+    uint first;     // in finalList
+    uint count;
+    bool evaluate;  // some entry says EVALUATE, or the tile has no list
+};
+
+TileLights tileLightsAt(uvec2 pixel) {
+    uint tile = tileIndexOf(pixel / kShadowTileSizePx);
+    uint word = finalCounts[tile];
+    TileLights t;
+    t.first = tileLightSlotIds[tile];
+    t.count = word & kFinalCountMask;
+    t.evaluate = (word & kFinalEvaluateBit) != 0u;
+    return t;
+}
+
+uint tileLightEntry(TileLights tile, uint i) { return finalList[tile.first + i]; }
+
+// 8-bit visibility of a pixel in a slot.
+uint slotVisibility(uint slot, uvec2 pixel) {
+    uvec2 local = pixel % kShadowTileSizePx;
+    uint lane = mortonLane(local.x, local.y);
+    return visibilityWords[slot * kVisibilitySlotWords + (lane >> 2u)] >> (8u * (lane & 3u)) & 0xFFu;
+}
+
+// 0 dark to 1 lit. An entry that says EVALUATE never occurs in a tile without `evaluate`.
+float storedVisibility(uint entry, uvec2 pixel) {
+    uint slot = finalSlotOrFlag(entry);
+    if (slot == kSlotAllLit) return 1.0;
+    if (slot >= kSlotEvaluate) return 0.0;
+    return dequantiseVisibility(slotVisibility(slot, pixel));
+}
+
+#endif

@@ -8,7 +8,10 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "gnomon/result.h"
 
 namespace gnomon::renderer {
 
@@ -82,6 +85,11 @@ struct Instance {
     glm::mat4 worldFromObject{1.0f};
 };
 
+/// True when the instance turns clockwise triangles into counter-clockwise ones: swap the front face when drawing it.
+[[nodiscard]] inline bool isMirrored(const Instance& instance) {
+    return glm::determinant(glm::mat3(instance.worldFromObject)) < 0.0f;
+}
+
 enum class LightKind : std::uint8_t { Point, Spot, Directional };
 
 // Radiometry as in KHR_lights_punctual: candela for point and spot, lux for directional.
@@ -122,11 +130,20 @@ struct Scene {
     std::vector<std::string> notes;  // what a loader left out or repaired, one sentence each
 };
 
-// World bounds of everything that is drawn; empty for a scene without geometry.
+/// World bounds of everything that is drawn; empty for a scene without geometry.
 Bounds worldBounds(const Scene& scene);
+
+/// Triangles drawn, every instance counted.
 std::uint64_t triangleCount(const Scene& scene);
 
-// Gives every light that lacks them a range and a source size, by the rule that docs/scenes.md states.
+/// Gives every light that lacks them a range and a source size, by the rule that docs/scenes.md states.
 void completeLights(Scene& scene);
+
+/// The scene's first camera; without one, a camera that frames the bounds from the front right and above.
+SceneCamera defaultCamera(const Scene& scene);
+
+/// Reads "x,y,z:x,y,z" or "x,y,z:x,y,z:degrees" (eye, target, vertical field of view), "#index" or the name of one of
+/// the scene's cameras, or "default". Changes `camera` on success only.
+Result parseCamera(std::string_view text, const Scene& scene, SceneCamera& camera);
 
 }  // namespace gnomon::renderer

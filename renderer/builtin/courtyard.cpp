@@ -1,0 +1,94 @@
+#include "renderer/builtin/courtyard.h"
+
+#include "renderer/builtin/procedural_textures.h"
+#include "renderer/builtin/scenes.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace gnomon::renderer {
+namespace courtyard {
+namespace {
+
+std::uint32_t textured(SceneBuilder& builder, const char* name, PaintedTexture painted, float normalScale = 1.0f) {
+    Material material;
+    material.name = name;
+    material.metallic = 0.0f;
+    material.normalScale = normalScale;
+    material.roughness = 1.0f;
+    const auto use = [&](Image& image) {
+        TextureUse texture;
+        texture.image = builder.image(std::move(image));
+        texture.uvTransform = glm::mat2(1.0f / painted.metres);
+        return texture;
+    };
+    material.baseColourTexture = use(painted.colour);
+    material.normalTexture = use(painted.normal);
+    material.metallicRoughnessTexture = use(painted.metallicRoughness);
+    return builder.material(std::move(material));
+}
+
+std::uint32_t plain(SceneBuilder& builder, const char* name, const glm::vec3& colour, float roughness, float metallic = 0.0f) {
+    Material material;
+    material.name = name;
+    material.baseColour = glm::vec4(colour, 1.0f);
+    material.roughness = roughness;
+    material.metallic = metallic;
+    return builder.material(std::move(material));
+}
+
+void makeMaterials(Parts& parts) {
+    SceneBuilder& b = parts.builder;
+    Materials& m = parts.materials;
+    m.stone = textured(b, "stone", paintBlocks(512, 2.0f, 4, 6, {0.74f, 0.68f, 0.58f}));
+    m.trim = textured(b, "trim", paintPlaster(256, {0.80f, 0.75f, 0.66f}), 0.6f);
+    m.plaster = textured(b, "plaster", paintPlaster(512, {0.80f, 0.62f, 0.47f}));
+    m.cobbles = textured(b, "cobbles", paintCobbles(512));
+    m.flags = textured(b, "flagstones", paintBlocks(512, 2.4f, 3, 4, {0.56f, 0.53f, 0.50f}));
+    m.wood = textured(b, "wood", paintPlanks(256, {0.58f, 0.41f, 0.27f}));
+    m.darkWood = textured(b, "dark wood", paintPlanks(256, {0.36f, 0.25f, 0.18f}));
+    m.clay = textured(b, "clay", paintClay(256, {0.68f, 0.36f, 0.24f}));
+    m.iron = plain(b, "iron", {0.05f, 0.05f, 0.055f}, 0.45f, 0.6f);
+    m.rope = plain(b, "rope", {0.22f, 0.16f, 0.10f}, 0.95f);
+    m.bronze = plain(b, "bronze", {0.30f, 0.36f, 0.27f}, 0.4f, 0.5f);
+    m.water = plain(b, "water", {0.015f, 0.05f, 0.06f}, 0.08f);
+    m.leaf = plain(b, "leaf", {0.09f, 0.17f, 0.045f}, 0.6f);
+    b.scene.materials[m.leaf].doubleSided = b.scene.materials[m.leaf].subsurface = true;
+    m.glow = plain(b, "flame", {0.0f, 0.0f, 0.0f}, 1.0f);
+    b.scene.materials[m.glow].emissive = glm::vec3(1.0f, 0.56f, 0.2f) * 60.0f;
+    m.coolGlow = plain(b, "cool lamp", {0.0f, 0.0f, 0.0f}, 1.0f);
+    b.scene.materials[m.coolGlow].emissive = glm::vec3(0.35f, 0.65f, 1.0f) * 40.0f;
+    const glm::vec3 cream(0.86f, 0.80f, 0.68f);
+    m.cloth = {textured(b, "cloth red", paintStripes(256, {0.66f, 0.10f, 0.09f}, cream)),
+               textured(b, "cloth blue", paintStripes(256, {0.10f, 0.22f, 0.50f}, cream)),
+               textured(b, "cloth ochre", paintStripes(256, {0.78f, 0.50f, 0.12f}, {0.45f, 0.12f, 0.10f})),
+               textured(b, "cloth green", paintStripes(256, {0.12f, 0.36f, 0.24f}, cream))};
+    for (const std::uint32_t cloth : m.cloth) b.scene.materials[cloth].doubleSided = true;
+}
+
+}  // namespace
+}  // namespace courtyard
+
+Scene makeCourtyard() {
+    using namespace courtyard;
+    Parts parts;
+    const auto side = [](const glm::vec3& middle, float turn, float halfLength) {
+        return Side{placed(middle, turn), halfLength, static_cast<int>(2.0f * halfLength / kBay + 0.5f)};
+    };
+    constexpr float kQuarter = 1.57079632679f;
+    parts.sides = {side({0, 0, -kHalfZ}, 0.0f, kHalfX), side({0, 0, kHalfZ}, 2.0f * kQuarter, kHalfX),
+                   side({kHalfX, 0, 0}, -kQuarter, kHalfZ), side({-kHalfX, 0, 0}, kQuarter, kHalfZ)};
+    makeMaterials(parts);
+    addArchitecture(parts);
+    addFurniture(parts);
+    addLights(parts);
+    SceneBuilder& b = parts.builder;
+    b.camera("overview", {-11.6f, 5.0f, 7.2f}, {1.6f, 1.9f, -2.0f}, 0.93f);
+    b.camera("arcade", {-12.2f, 1.75f, -10.7f}, {2.0f, 1.55f, -9.3f}, 0.95f);
+    b.camera("fountain", {4.6f, 1.45f, 4.4f}, {-0.6f, 1.75f, -1.2f}, 0.9f);
+    b.scene.skyColour = {0.030f, 0.048f, 0.105f};
+    b.scene.groundColour = {0.022f, 0.020f, 0.022f};
+    b.scene.exposureEv100 = 1.0f;
+    return std::move(b.scene);
+}
+
+}  // namespace gnomon::renderer

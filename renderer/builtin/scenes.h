@@ -1,0 +1,19 @@
+#pragma once
+// The functions behind makeBuiltinScene, one per scene.
+
+#include "renderer/builtin/builtin.h"
+
+namespace gnomon::renderer {
+
+Scene makeCourtyard();
+
+Scene makeEmptyPlane();
+Scene makeSphereOnPlane();
+Scene makeBoxes();
+Scene makeColumns(const BuiltinOptions& options);
+Scene makeCloth();
+Scene makeMasked();
+Scene makeSingleTriangle();
+Scene makeLightsOnly();
+
+}  // namespace gnomon::renderer

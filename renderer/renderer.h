@@ -1,0 +1,83 @@
+#pragma once
+// The reference host: draws a scene with Gnomon's tiled deferred shadows, or with the same shadows evaluated inside the
+// lighting shader ("inline", the paper's "before"), and says what each pass took.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gnomon/gnomon.h"
+#include "renderer/gpu/device.h"
+#include "renderer/picture/picture.h"
+#include "renderer/scene/scene.h"
+
+namespace gnomon::renderer {
+
+enum class ShadowMode : std::uint8_t { Deferred, Inline, Off };
+
+struct RendererDesc {
+    std::uint32_t widthPx = 1280, heightPx = 720;
+    Filter filter = Filter::Pcf;
+    std::uint32_t pcfRadius = 1;
+    ListReservation listReservation = ListReservation::Approximate;
+    std::uint32_t fixedListEntriesPerTile = 32;  // with ListReservation::Fixed
+    std::uint32_t subgroupSize = 0;              // 0: the device's own
+    std::uint32_t listEntries = 0, visibilitySlots = 0;  // pools; 0: the library's defaults
+    std::uint32_t atlasSizePx = 0;  // 0: 4096 up to 1920x1080, above 8192; at most what the device has
+    DeviceDepth deviceDepth = DeviceDepth::ReversedZ;
+    bool quantiseInline = true;  // inline visibility has the 8 bits of a slot; off: to measure what they cost
+};
+
+struct PassTime {
+    std::string name;
+    double milliseconds = 0.0;
+    bool drawing = false;  // rasterization; else compute
+};
+
+struct MemoryUseRow {
+    std::string name;
+    std::uint64_t bytes = 0;
+    bool library = false;  // of the library; else of the reference renderer
+};
+
+struct FrameReport {
+    FrameStatistics statistics;
+    std::vector<PassTime> passes;  // library's and renderer's, in order of execution; empty without timestamps
+    std::uint32_t shadowViews = 0, shadowViewsDrawn = 0;
+    std::uint64_t shadowTrianglesDrawn = 0;
+    std::uint32_t shadowLightsShrunk = 0, shadowLightsDropped = 0;  // by the atlas' budget
+    std::uint32_t atlasSizePx = 0;
+};
+
+/// Not thread safe. Throws GpuError (a std::runtime_error with one sentence).
+class Renderer {
+public:
+    /// Uploads the scene; it is copied as far as needed and may go afterwards. Lights must have ranges (completeLights()).
+    Renderer(const Device& device, const Scene& scene, const RendererDesc& desc);
+    ~Renderer();
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+
+    /// Records and submits one frame; waits only for the frame before the last. Returns its number.
+    std::uint64_t renderFrame(const SceneCamera& camera, ShadowMode mode);
+    /// Waits until everything submitted has finished.
+    void wait();
+    /// Of a frame that has finished (after wait(): of the last two). Throws if it is not known any more.
+    FrameReport report(std::uint64_t frameNumber) const;
+    /// Linear picture of the last frame. Waits.
+    HdrPicture readPicture();
+    /// Triangle id (position among all instances' triangles) per pixel, kNone at background. Waits.
+    std::vector<std::uint32_t> readTriangleIds();
+
+    std::vector<MemoryUseRow> memory() const;
+    const MemoryReport& libraryMemory() const;
+    std::uint32_t subgroupSize() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace gnomon::renderer

@@ -1,0 +1,53 @@
+#pragma once
+// Which lights of the scene go into this frame's lists, and in which order.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gnomon/prepare.h"
+#include "gnomon/result.h"
+#include "gnomon/scene.h"
+#include "gpu_interface/structs.h"
+#include "prepare/camera.h"
+#include "prepare/light_volume.h"
+
+namespace gnomon::prepare {
+
+/// A light that passed culling. For directional lights volume and depths stay empty.
+struct VisibleLight {
+    std::uint32_t hostIndex = 0;
+    bool directional = false;
+    LightVolume volume;
+    DepthRange depth;
+    gpu::GpuLight gpu = {};
+};
+
+/// Fails with a sentence that names the light where one breaks a rule of scene.h.
+Result validateLights(std::span<const Light> lights, std::uint32_t shadowViewCount) noexcept;
+
+class CullAndSort {
+public:
+    /// May throw std::bad_alloc where the number of lights has grown. `lights` must be valid.
+    void run(std::span<const Light> lights, const ViewCamera& camera, const Frustum& frustum, const PrepareDesc& desc);
+
+    /// Directional lights by host index, then the others by nearest view depth, ties by host index; at most 1024.
+    [[nodiscard]] std::span<const VisibleLight> visible() const { return {visible_.data(), visibleCount_}; }
+    [[nodiscard]] std::uint32_t directionalCount() const { return directionalCount_; }
+    [[nodiscard]] std::uint32_t droppedCount() const { return droppedCount_; }
+
+private:
+    struct Candidate {
+        std::uint64_t sortKey;  // directional lights first; then depth; then host index
+        float importance;
+    };
+    void choose();
+    void fillVisible(std::span<const Light> lights, const ViewCamera& camera, const PrepareDesc& desc);
+
+    std::vector<Candidate> candidates_;
+    std::vector<std::uint8_t> kept_;  // by host index: in the lists last frame
+    std::vector<VisibleLight> visible_;
+    std::uint32_t visibleCount_ = 0, directionalCount_ = 0, droppedCount_ = 0;
+};
+
+}  // namespace gnomon::prepare

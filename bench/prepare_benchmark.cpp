@@ -1,0 +1,144 @@
+// Time of phase 1 (Prepare::run) on one core, the whole call: validation, culling, sort, zBins, tile light masks.
+//
+// Light distributions, all seeded, all lights visible, half of them spots (half-angle 0.2 to 1.0 rad, any direction),
+// camera with a vertical field of view of 60 degrees at the origin, infinite far, reversed Z:
+//   Spread  lights spread evenly over the view frustum between 2 and 100 m of depth, range 2 to 8 m
+//           (a lit street; at 3840x2160 a light covers 0.9 % of the screen on average);
+//   Near    the same between 1 and 25 m of depth (a room; many lights are cut by the near plane or hold the eye);
+//   Fringe  the worst for spans: points in front of the camera whose image fills the screen but for its corners, so
+//           that each light has a span in every row and none takes the short way;
+//   Full    the worst for tiles: every light covers the whole screen.
+// The label gives the mean count of lights per tile.
+//
+// prepare_benchmark --benchmark_filter=Spread
+
+#include <benchmark/benchmark.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "gnomon/prepare.h"
+
+namespace {
+
+enum class Distribution { Spread, Near, Fringe, Full };
+
+constexpr double kTanHalfFov = 0.5773502691896258;
+
+double uniform(std::mt19937& random, double low, double high) {
+    return low + (high - low) * (random() / 4294967296.0);
+}
+
+gnomon::Light lightAt(double x, double y, double depth, double range) {
+    gnomon::Light light;
+    light.position[0] = static_cast<float>(x);
+    light.position[1] = static_cast<float>(y);
+    light.position[2] = static_cast<float>(-depth);
+    light.rangeMetres = static_cast<float>(range);
+    return light;
+}
+
+void makeSpot(gnomon::Light& light, std::mt19937& random) {
+    light.type = gnomon::LightType::Spot;
+    for (float& f : light.direction) f = static_cast<float>(uniform(random, -1, 1));
+    light.direction[2] += light.direction[2] < 0 ? -0.01f : 0.01f;
+    light.outerConeAngle = static_cast<float>(uniform(random, 0.2, 1.0));
+}
+
+std::vector<gnomon::Light> makeLights(Distribution distribution, int count, double aspect) {
+    std::mt19937 random(7);
+    std::vector<gnomon::Light> lights;
+    for (int i = 0; i < count; ++i) {
+        if (distribution == Distribution::Full) {
+            lights.push_back(lightAt(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1), 50));
+            continue;
+        }
+        if (distribution == Distribution::Fringe) {
+            // Seen under a half-angle between that of the screen's side and that of its corner.
+            const double depth = uniform(random, 10, 60), tangent = kTanHalfFov * aspect * uniform(random, 1.02, 1.1);
+            lights.push_back(lightAt(0, 0, depth, depth * tangent / std::sqrt(1 + tangent * tangent)));
+            continue;
+        }
+        const bool isNear = distribution == Distribution::Near;
+        // Evenly over the frustum's volume: the cube of the depth is uniform.
+        const double first = isNear ? 1 : 2, last = isNear ? 25 : 100;
+        const double depth = std::cbrt(uniform(random, first * first * first, last * last * last));
+        const double halfHeight = depth * kTanHalfFov;
+        lights.push_back(lightAt(uniform(random, -1, 1) * halfHeight * aspect, uniform(random, -1, 1) * halfHeight,
+                                 depth, uniform(random, 2, 8)));
+        if (i % 2 == 0) makeSpot(lights.back(), random);
+    }
+    return lights;
+}
+
+gnomon::Camera makeCamera(double aspect) {
+    gnomon::Camera camera;
+    camera.clipFromView[0] = static_cast<float>(1 / (kTanHalfFov * aspect));
+    camera.clipFromView[5] = static_cast<float>(-1 / kTanHalfFov);
+    camera.clipFromView[11] = -1;
+    camera.clipFromView[14] = 0.1f;
+    return camera;
+}
+
+double lightsPerTile(const std::vector<std::uint32_t>& masks) {
+    double bits = 0;
+    for (std::size_t word = 0; word < masks.size(); ++word) {
+        if (word % 33 != 0) bits += std::popcount(masks[word]);
+    }
+    return bits / (static_cast<double>(masks.size()) / 33);
+}
+
+void prepareLights(benchmark::State& state, Distribution distribution) {
+    const auto count = static_cast<int>(state.range(0));
+    const auto width = static_cast<std::uint32_t>(state.range(1)), height = static_cast<std::uint32_t>(state.range(2));
+    const double aspect = static_cast<double>(width) / height;
+    const std::vector<gnomon::Light> lights = makeLights(distribution, count, aspect);
+    gnomon::PrepareDesc desc;
+    desc.maxWidthPx = width, desc.maxHeightPx = height;
+    std::unique_ptr<gnomon::Prepare> prepare;
+    if (!gnomon::Prepare::create(desc, prepare)) std::abort();
+
+    const gnomon::PrepareSizes sizes = gnomon::prepareSizes(width, height);
+    std::vector<std::uint32_t> frame(sizes.frameConstants / 4), gpuLights(sizes.lights / 4), zBins(sizes.zBins / 4),
+        masks(sizes.tileLightMasks / 4);
+    gnomon::ViewInput input;
+    input.camera = makeCamera(aspect);
+    input.widthPx = width, input.heightPx = height;
+    input.lights = lights;
+    gnomon::PrepareReport report;
+    for (auto _ : state) {
+        const gnomon::Result result =
+            prepare->run(input, {frame.data(), gpuLights.data(), zBins.data(), masks.data()}, report);
+        if (!result) {
+            state.SkipWithError(result.message());
+            break;
+        }
+        benchmark::ClobberMemory();
+    }
+    state.SetLabel(std::to_string(report.visible) + " visible, " + std::to_string(lightsPerTile(masks)).substr(0, 6) +
+                   " per tile");
+}
+
+void sizes(benchmark::internal::Benchmark* benchmark) {
+    for (const int count : {64, 256, 512, 1024}) benchmark->Args({count, 3840, 2160});
+    benchmark->Args({1024, 1920, 1080})->Args({1024, 7680, 4320})->Unit(benchmark::kMicrosecond);
+}
+
+BENCHMARK_CAPTURE(prepareLights, Spread, Distribution::Spread)->Apply(sizes);
+BENCHMARK_CAPTURE(prepareLights, Near, Distribution::Near)->Apply(sizes);
+BENCHMARK_CAPTURE(prepareLights, Fringe, Distribution::Fringe)->Apply(sizes);
+BENCHMARK_CAPTURE(prepareLights, Full, Distribution::Full)->Apply(sizes);
+// More than fit: the choice among 10,000.
+BENCHMARK_CAPTURE(prepareLights, SpreadCrowd, Distribution::Spread)
+    ->Args({10000, 3840, 2160})
+    ->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();

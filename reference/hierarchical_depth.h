@@ -1,0 +1,27 @@
+#pragma once
+// Hierarchical depth: nearest and farthest view depth of every shadow tile, over its pixels that are not background.
+//
+// Source: the specification, Hierarchical depth; the paper, section 2.2, footnote 1.
+// What: a loop over the tile's pixels. A tile of background alone has minimum +infinity above maximum -infinity.
+// Limits: checks the library's own pyramid (view depths), not one that a host gave (device depths, background included).
+
+#include <span>
+
+#include "reference/findings.h"
+#include "reference/receivers.h"
+
+namespace gnomon::reference {
+
+struct TileDepths {
+    double minMetres = kInfinity, maxMetres = -kInfinity;
+    double toleranceMetres = 0;  ///< the largest reconstruction error of the tile's pixels
+    [[nodiscard]] bool empty() const { return minMetres > maxMetres; }
+};
+
+/// One per shadow tile, in rows.
+std::vector<TileDepths> tileDepths(const PixelGrid& grid);
+
+/// `minMax`: two floats per shadow tile, in rows. An empty tile may hold any minimum above its maximum.
+Findings checkTileDepths(const PixelGrid& grid, std::span<const float> minMax);
+
+}  // namespace gnomon::reference

@@ -7,7 +7,7 @@
 //   middle    I = median peak intensity of the local lights that shine
 //   cut-off   E = I / d^2 / kFaintest: what such a light gives at that distance, lowered until nobody sees it go
 //   range     r = sqrt(peak / E), at most 2 * diagonal
-// kFaintest = 200 is 7.6 stops below what the picture is exposed for, about three levels of 255. The lighting also fades
+// kFaintest = 100 is 6.6 stops below what the picture is exposed for. The lighting also fades
 // to zero towards the range, so there is no edge. docs/scenes.md repeats the rule for users.
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace gnomon::renderer {
 namespace {
 
-constexpr float kFaintest = 200.0f;
+constexpr float kFaintest = 100.0f;
 constexpr float kSunRadius = 0.00465f;       // radians; the sun's disc is 0.53 degrees across
 constexpr float kLeastRadius = 0.01f, kMostRadius = 0.25f;  // metres: a bare bulb to a large shade
 constexpr float kRadiusOfSpacing = 0.01f;

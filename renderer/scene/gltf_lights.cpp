@@ -56,7 +56,6 @@ void addLight(Document& document, const PlacedNode& node, Scene& scene) {
     }
     light.intensity = toFloat(source.intensity, user);
     if (light.intensity < 0.0f) refuse("{} has the intensity {}", user, light.intensity);
-    if (light.intensity == 0.0f) document.note(fmt::format("{} has an intensity of zero.", user));
     light.rangeMetres = light.kind == LightKind::Directional ? 0.0f : toFloat(source.range, user);
     if (light.rangeMetres < 0.0f) refuse("{} has the range {}", user, light.rangeMetres);
     scene.lights.push_back(std::move(light));

@@ -1,6 +1,5 @@
 #include "renderer/scene/gltf_nodes.h"
 
-#include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
@@ -43,7 +42,7 @@ void checkFinite(const glm::mat4& matrix, const std::string& user) {
 
 std::vector<int> sceneRoots(Document& document) {
     const tinygltf::Model& model = document.model();
-    if (!model.scenes.empty()) return at(model.scenes, std::max(model.defaultScene, model.defaultScene == -1 ? 0 : -2), "scene", "the file").nodes;
+    if (!model.scenes.empty()) return at(model.scenes, model.defaultScene == -1 ? 0 : model.defaultScene, "scene", "the file").nodes;
     if (model.defaultScene != -1) refuse("the file's default scene is {}, but the file has no scenes", model.defaultScene);
     std::vector<bool> isChild(model.nodes.size(), false);
     for (const tinygltf::Node& node : model.nodes)

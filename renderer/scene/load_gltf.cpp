@@ -1,5 +1,6 @@
 #include "renderer/scene/load_gltf.h"
 
+#include <algorithm>
 #include <map>
 #include <new>
 
@@ -31,6 +32,7 @@ public:
         }
         if (document_.model().nodes.empty()) placeAllMeshes();
         if (scene_.instances.empty() && scene_.lights.empty()) refuse("the scene is empty: it holds neither triangles nor lights");
+        noteDarkLights();
         if (scene_.materials.empty()) materials_.use(-1, "the scene");
         materials_.decodeImages();
         for (LoadedMesh& mesh : loaded_) finishMesh(mesh);
@@ -161,6 +163,11 @@ private:
             if (!loaded_[slot].primitives.empty()) addInstance(slot, loaded_[slot].name, glm::mat4(1.0f), "the file");
         }
         if (!scene_.instances.empty()) document_.note("The file has no nodes; every mesh is drawn once, where it was modelled.");
+    }
+
+    void noteDarkLights() {
+        const auto dark = std::count_if(scene_.lights.begin(), scene_.lights.end(), [](const SceneLight& l) { return l.intensity == 0.0f; });
+        if (dark > 0) document_.note(fmt::format("{} of {} lights have an intensity of zero.", dark, scene_.lights.size()));
     }
 
     void finishMesh(LoadedMesh& source) {

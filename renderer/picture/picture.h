@@ -29,7 +29,11 @@ float automaticExposure(const HdrPicture& picture);
 /// Reproduction for Digital Images", equation 4), and encodes as sRGB.
 Picture toneMap(const HdrPicture& picture, float exposureEv100);
 
-/// Throw std::runtime_error with one sentence where the file cannot be written.
+/// Throws std::runtime_error with one sentence where a file cannot be written there: to be asked before long work.
+/// Leaves an existing file as it is.
+void checkWritable(const std::filesystem::path& file);
+
+/// Throw std::runtime_error with one sentence where the file cannot be written. An existing file is replaced at once.
 void writePng(const Picture& picture, const std::filesystem::path& file);
 void writeExr(const HdrPicture& picture, const std::filesystem::path& file);  ///< linear, 16-bit half
 /// Throws std::runtime_error with one sentence where the file cannot be read.

@@ -1,0 +1,51 @@
+// How vertex shaders pull the scene's geometry: descriptor set 0 (gpu_scene.h).
+#ifndef GNOMON_RENDERER_SCENE_PULL_GLSL
+#define GNOMON_RENDERER_SCENE_PULL_GLSL
+#include "renderer/gpu/scene_data.h"
+
+layout(set = 0, binding = 0, std430) readonly buffer Positions { float positions[]; };
+layout(set = 0, binding = 1, std430) readonly buffer Attributes { uint attributes[]; };
+layout(set = 0, binding = 2, std430) readonly buffer Extras { uint extras[]; };
+layout(set = 0, binding = 3, std430) readonly buffer Indices { uint indices[]; };
+layout(set = 0, binding = 4, std430) readonly buffer DrawItems { GpuDrawItem drawItems[]; };
+
+vec3 pullPosition(uint vertex) { return vec3(positions[3u * vertex], positions[3u * vertex + 1u], positions[3u * vertex + 2u]); }
+
+vec3 transformPoint(GpuDrawItem item, vec3 p) {
+    const vec4 h = vec4(p, 1.0);
+    return vec3(dot(item.row0, h), dot(item.row1, h), dot(item.row2, h));
+}
+vec3 transformVector(GpuDrawItem item, vec3 v) {
+    return vec3(dot(item.row0.xyz, v), dot(item.row1.xyz, v), dot(item.row2.xyz, v));
+}
+// By the cofactor matrix: the inverse transposed up to a positive factor, also for mirrored items.
+vec3 transformNormal(GpuDrawItem item, vec3 n) {
+    const vec3 a = vec3(item.row0.x, item.row1.x, item.row2.x);
+    const vec3 b = vec3(item.row0.y, item.row1.y, item.row2.y);
+    const vec3 c = vec3(item.row0.z, item.row1.z, item.row2.z);
+    const vec3 t = cross(b, c) * n.x + cross(c, a) * n.y + cross(a, b) * n.z;
+    return (item.flags & kItemMirroredBit) != 0u ? -t : t;
+}
+
+vec3 unpackOctahedral(uint word) {
+    const vec2 e = unpackSnorm2x16(word);
+    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    const float fold = max(-n.z, 0.0);
+    n.x += n.x >= 0.0 ? -fold : fold;
+    n.y += n.y >= 0.0 ? -fold : fold;
+    return normalize(n);
+}
+
+vec2 pullTexcoord(GpuDrawItem item, uint vertex, uint set) {
+    if (set == 1u && (item.flags & kItemExtrasBit) != 0u) {
+        const uint at = (vertex + item.extraOffset) * kExtraWords;
+        return vec2(uintBitsToFloat(extras[at]), uintBitsToFloat(extras[at + 1u]));
+    }
+    return vec2(uintBitsToFloat(attributes[vertex * kAttributeWords + 2u]), uintBitsToFloat(attributes[vertex * kAttributeWords + 3u]));
+}
+vec4 pullColour(GpuDrawItem item, uint vertex) {
+    if ((item.flags & kItemExtrasBit) == 0u) return vec4(1.0);
+    const uint at = (vertex + item.extraOffset) * kExtraWords;
+    return vec4(unpackHalf2x16(extras[at + 2u]), unpackHalf2x16(extras[at + 3u]));
+}
+#endif

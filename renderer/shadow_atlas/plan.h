@@ -1,0 +1,95 @@
+#pragma once
+// Which light gets which squares of the shadow atlas this frame: pure CPU, no Vulkan device needed.
+//
+// Every casting light wishes for a resolution by its size on screen. If the wishes exceed the atlas, the squares that
+// weigh most for their importance are halved first; nothing is dropped unless even the smallest squares do not fit.
+// Squares are powers of two along a Morton curve, so they pack without loss; a square whose size did not change keeps its
+// place, so that its contents can be kept from frame to frame.
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "gnomon/scene.h"
+#include "renderer/gpu/cull_volume.h"
+#include "renderer/scene/scene.h"
+
+namespace gnomon::renderer {
+
+/// One light of the scene; its index in the span given to plan() identifies it from frame to frame.
+struct ShadowLight {
+    LightKind kind = LightKind::Point;  ///< directional lights get no view
+    glm::dvec3 position{0.0};           ///< world
+    glm::vec3 direction{0.0f, -1.0f, 0.0f};
+    float rangeMetres = 1.0f;
+    float outerConeAngle = 0.785398163f;  ///< half-angle
+    bool casts = true;
+};
+ShadowLight shadowLightOf(const SceneLight& light);
+
+struct ShadowPlanSettings {
+    std::uint32_t atlasSizePx = 4096;  ///< power of two
+    std::uint32_t layers = 1;
+    std::uint32_t guardTexels = 4;  ///< beyond 90 degrees or the cone on each side: the widest PCF kernel and one
+    std::uint32_t minFacePx = 32, maxFacePx = 1024;
+    std::uint32_t minSpotPx = 64, maxSpotPx = 2048;
+    float texelsPerPixel = 1.0f;  ///< of the screen, where the light's range ends
+};
+
+struct ShadowPlanCamera {
+    glm::dvec3 position{0.0};
+    float pixelsPerRadian = 1000.0f;  ///< image height / (2 tan(vertical field of view / 2))
+    bool orthographic = false;
+    float pixelsPerMetre = 100.0f;  ///< orthographic only
+    CullVolume frustum;             ///< optional (no planes: everything counts as visible)
+};
+
+/// A square of one light; six for a point light.
+struct PlannedView {
+    std::uint32_t light = 0, face = 0;
+    std::uint32_t x = 0, y = 0, layer = 0, size = 0;
+    ShadowView view;  ///< clipFromWorld relative to the frame's origin
+};
+
+struct ShadowPlan {
+    std::vector<PlannedView> views;
+    std::vector<std::uint32_t> firstView;  ///< per light: index into views, or kNoShadowViews
+    std::uint32_t lightsShrunk = 0;        ///< got less than they wished for
+    std::uint32_t halvings = 0;            ///< summed over those
+    std::uint32_t lightsWithout = 0;       ///< cast no shadow, because not even the smallest squares fit
+    bool repacked = false;                 ///< every square may have moved
+    std::uint64_t wantedTexels = 0, usedTexels = 0, atlasTexels = 0;
+};
+
+/// Metres: 1 cm for small lights (a lantern's cage stands a few centimetres from its flame), up to 5 cm. Reversed-Z
+/// floats make so near a plane harmless.
+float shadowNearMetres(float rangeMetres);
+
+/// The view of one square: face 0..5 (+X -X +Y -Y +Z -Z) of a point light, or a spot's only view.
+ShadowView makeShadowView(const ShadowLight& light, std::uint32_t face, std::uint32_t sizePx, std::uint32_t guardTexels,
+                          const glm::dvec3& origin);
+
+/// Keeps sizes and places from frame to frame. Not thread safe.
+class ShadowPlanner {
+public:
+    explicit ShadowPlanner(const ShadowPlanSettings& settings) : settings_(settings) {}
+    ShadowPlan plan(std::span<const ShadowLight> lights, const ShadowPlanCamera& camera, const glm::dvec3& origin);
+    [[nodiscard]] const ShadowPlanSettings& settings() const { return settings_; }
+
+private:
+    struct Wish;
+    std::vector<Wish> wishes(std::span<const ShadowLight> lights, const ShadowPlanCamera& camera);
+    void shrinkToFit(std::vector<Wish>& wishes, ShadowPlan& plan) const;
+    void place(ShadowPlan& plan);
+
+    struct Place {
+        std::uint32_t x, y, layer, size;
+    };
+    ShadowPlanSettings settings_;
+    std::unordered_map<std::uint32_t, std::uint32_t> wishedLog2_;  // per light, for the hysteresis
+    std::unordered_map<std::uint64_t, Place> places_;              // per light * 8 + face
+};
+
+}  // namespace gnomon::renderer

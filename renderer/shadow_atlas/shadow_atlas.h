@@ -1,0 +1,79 @@
+#pragma once
+// The shadow atlas: one D32 image with layers, and the pass that draws those views whose content changed.
+//
+// Everything is drawn without hardware bias and without culling of faces: cloth without thickness casts from both sides;
+// the library's oriented bias does the rest. Reversed Z.
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "gnomon/tiled_shadows.h"
+#include "renderer/gpu/gpu_scene.h"
+#include "renderer/shadow_atlas/plan.h"
+
+namespace gnomon::renderer {
+
+struct ShadowAtlasStatistics {
+    std::uint32_t viewsDrawn = 0, viewsCached = 0;
+    std::uint32_t draws = 0;
+    std::uint64_t triangles = 0;
+    double cullMilliseconds = 0.0;  ///< CPU time of culling and recording
+};
+
+/// Not thread safe. Layout outside of record(): SHADER_READ_ONLY_OPTIMAL.
+class ShadowAtlasImage {
+public:
+    static constexpr VkFormat kFormat = VK_FORMAT_D32_SFLOAT;
+
+    /// 4096 for up to 1080p, 8192 above; never more than the device draws, always a power of two.
+    static std::uint32_t defaultSizePx(const Device& device, std::uint32_t screenHeightPx);
+
+    /// Creates the image, wholly unoccluded. The scene gives the set layouts. Throws GpuError.
+    ShadowAtlasImage(const Device& device, const GpuScene& scene, std::uint32_t sizePx, std::uint32_t layers = 1);
+
+    /// Draws what changed: a view is drawn again if its light, its rectangle or the scene's casters changed. `lights` is
+    /// what the plan was made from. After GpuScene::recordTransforms() with the plan's origin, outside of rendering.
+    /// Afterwards visible to sampled reads of compute and fragment shaders.
+    ShadowAtlasStatistics record(VkCommandBuffer commands, const GpuScene& scene, std::span<const ShadowLight> lights,
+                                 const ShadowPlan& plan);
+    /// Everything is drawn again next time (to measure, or after another scene).
+    void forget() { drawn_.clear(); }
+
+    [[nodiscard]] const GpuImage& image() const { return image_; }
+    /// For FrameDesc::atlases.
+    [[nodiscard]] ShadowAtlas atlas() const { return {image_.view(), sizePx_, sizePx_, image_.desc().layers}; }
+    [[nodiscard]] std::vector<MemoryRow> memoryRows() const { return {{"shadow atlas", image_.bytes()}}; }
+
+private:
+    // What a square shows; equal keys, equal contents.
+    struct Key {
+        glm::dvec3 position;
+        glm::vec3 direction;
+        float range, angle;
+        LightKind kind;
+        std::uint32_t face, x, y, layer, size;
+        std::uint64_t castersRevision;
+        bool operator==(const Key&) const = default;
+    };
+    struct Task {
+        const PlannedView* view;
+        std::uint32_t firstRange, rangeCount;
+    };
+    [[nodiscard]] Key keyOf(const GpuScene& scene, const ShadowLight& light, const PlannedView& view) const;
+    void findTasks(const GpuScene& scene, std::span<const ShadowLight> lights, const ShadowPlan& plan, ShadowAtlasStatistics& statistics);
+    void drawLayer(VkCommandBuffer commands, const GpuScene& scene, std::uint32_t layer, ShadowAtlasStatistics& statistics) const;
+    void drawView(VkCommandBuffer commands, const GpuScene& scene, const Task& task, ShadowAtlasStatistics& statistics) const;
+
+    const Device& device_;
+    std::uint32_t sizePx_;
+    GpuImage image_;
+    PipelineLayout layout_;
+    Pipeline opaque_, masked_;
+    std::unordered_map<std::uint64_t, Key> drawn_;  // per light * 8 + face
+    std::vector<Task> tasks_;
+    std::vector<DrawRange> ranges_;
+    std::vector<GpuScene::Candidate> candidates_;
+};
+
+}  // namespace gnomon::renderer

@@ -55,23 +55,25 @@ std::vector<gnomon::Light> makeLights(Distribution distribution, int count, doub
     std::mt19937 random(7);
     std::vector<gnomon::Light> lights;
     for (int i = 0; i < count; ++i) {
+        // Named, because the order in which a call's arguments are computed is the compiler's choice.
+        const double x = uniform(random, -1, 1), y = uniform(random, -1, 1), z = uniform(random, 0, 1);
+        const double range = uniform(random, 2, 8);
         if (distribution == Distribution::Full) {
-            lights.push_back(lightAt(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1), 50));
+            lights.push_back(lightAt(x, y, z, 50));
             continue;
         }
         if (distribution == Distribution::Fringe) {
             // Seen under a half-angle between that of the screen's side and that of its corner.
-            const double depth = uniform(random, 10, 60), tangent = kTanHalfFov * aspect * uniform(random, 1.02, 1.1);
+            const double depth = 10 + 50 * z, tangent = kTanHalfFov * aspect * (1.06 + 0.04 * x);
             lights.push_back(lightAt(0, 0, depth, depth * tangent / std::sqrt(1 + tangent * tangent)));
             continue;
         }
         const bool isNear = distribution == Distribution::Near;
         // Evenly over the frustum's volume: the cube of the depth is uniform.
         const double first = isNear ? 1 : 2, last = isNear ? 25 : 100;
-        const double depth = std::cbrt(uniform(random, first * first * first, last * last * last));
+        const double depth = std::cbrt(first * first * first * (1 - z) + last * last * last * z);
         const double halfHeight = depth * kTanHalfFov;
-        lights.push_back(lightAt(uniform(random, -1, 1) * halfHeight * aspect, uniform(random, -1, 1) * halfHeight,
-                                 depth, uniform(random, 2, 8)));
+        lights.push_back(lightAt(x * halfHeight * aspect, y * halfHeight, depth, range));
         if (i % 2 == 0) makeSpot(lights.back(), random);
     }
     return lights;

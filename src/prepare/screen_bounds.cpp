@@ -49,6 +49,7 @@ struct BallRows {
     float tangent;   // L; 0 where the eye is inside
     float tangent2;  // L^2; negative where the eye is inside
     float nearMetres;
+    bool inFront;  // wholly in front of the near plane
 };
 
 // Wholly in front of the near plane: both tangents count everywhere.
@@ -75,7 +76,7 @@ void extentsCut(const ScreenGrid& grid, const BallRows& ball, std::uint32_t firs
                 float* high) {
     const float *vs = grid.boundaryV.data(), *secants = grid.boundarySecant.data(),
                 *cosines = grid.boundaryCosine.data();
-    const BallRows l = ball;
+    const BallRows l = ball;  // a copy, which the outputs cannot alias
     const float perNear = 1.0f / l.nearMetres;
     for (std::uint32_t j = first; j < last; ++j) {
         const float s = (vs[j] * l.y + l.z) * cosines[j];
@@ -207,6 +208,78 @@ bool cornersInside(const ScreenGrid& grid, const ConeOutline& outline) {
     return true;
 }
 
+LightVolume flipped(const ScreenGrid& grid, LightVolume volume) {
+    const auto flip = [&](Vec3 v) { return Vec3{v.x * grid.flipX, v.y * grid.flipY, v.z}; };
+    volume.apexVs = flip(volume.apexVs);
+    volume.axisVs = flip(volume.axisVs);
+    return volume;
+}
+
+BallRows ballRows(const ScreenGrid& grid, Vec3 centre, double radius, double seenRadius) {
+    const double power = dot(centre, centre) - radius * radius;
+    const auto f = [](double d) { return static_cast<float>(d); };
+    return {f(centre.x),
+            f(centre.y),
+            f(centre.z),
+            f(seenRadius * seenRadius),
+            f(std::sqrt(std::max(0.0, power))),
+            f(power),
+            f(grid.nearMetres),
+            centre.z - radius >= grid.nearMetres};
+}
+
+// Extent of u on the boundaries first to last - 1; low above high where a boundary misses the ball.
+void extentsOf(const ScreenGrid& grid, const BallRows& ball, std::uint32_t first, std::uint32_t last, float* low,
+               float* high) {
+    if (grid.orthographic) {
+        extentsParallel(grid, ball, first, last, low, high);
+    } else if (ball.inFront) {
+        extentsInFront(grid, ball, first, last, low, high);
+    } else {
+        extentsCut(grid, ball, first, last, low, high);
+    }
+}
+
+// From boundaries to rows: the wider of a row's two boundaries, or the image's own end where it lies between.
+void joinBoundaries(const ScreenGrid& grid, const Coverage& coverage, const BallImage& image, const float* low,
+                    const float* high, float* rowLow, float* rowHigh) {
+    for (std::uint32_t row = coverage.firstRow; row < coverage.lastRow; ++row) {
+        rowLow[row] = low[row] < low[row + 1] ? low[row] : low[row + 1];
+        rowHigh[row] = high[row] > high[row + 1] ? high[row] : high[row + 1];
+    }
+    const auto uLow = static_cast<float>(image.uLow), uHigh = static_cast<float>(image.uHigh);
+    atPeak(grid, coverage, image.vOfLow, [&](std::uint32_t row) { rowLow[row] = std::min(rowLow[row], uLow); });
+    atPeak(grid, coverage, image.vOfHigh, [&](std::uint32_t row) { rowHigh[row] = std::max(rowHigh[row], uHigh); });
+}
+
+void cutByOutline(const ScreenGrid& grid, const Coverage& coverage, const ConeOutline& outline, double vLow,
+                  double vHigh, float* rowLow, float* rowHigh) {
+    const auto clampToFloat = [](double u) { return static_cast<float>(std::clamp<double>(u, -kNowhere, kNowhere)); };
+    const float uLow = clampToFloat(outline.uLow), uHigh = clampToFloat(outline.uHigh);
+    for (std::uint32_t row = coverage.firstRow; row < coverage.lastRow; ++row) {
+        rowLow[row] = rowLow[row] > uLow ? rowLow[row] : uLow;
+        rowHigh[row] = rowHigh[row] < uHigh ? rowHigh[row] : uHigh;
+    }
+    for (int i = 0; i < outline.count; ++i) {
+        cutRows(grid, coverage, outline.halfPlanes[i], clampToFloat(vLow), clampToFloat(vHigh), rowLow, rowHigh);
+    }
+}
+
+// From u to columns, rounded outward and clamped to the screen.
+void spansOf(const ScreenGrid& grid, const Coverage& coverage, const float* rowLow, const float* rowHigh,
+             TileSpan* spans) {
+    const auto tilesPerU = static_cast<float>(1 / grid.uPerTile);
+    const auto lowOffset = static_cast<float>((-grid.uMin - grid.uvSlack) / grid.uPerTile);
+    const auto highOffset = static_cast<float>((-grid.uMin + grid.uvSlack) / grid.uPerTile + 1);
+    const auto columns = static_cast<float>(grid.columns);
+    for (std::uint32_t row = coverage.firstRow; row < coverage.lastRow; ++row) {
+        const float first = rowLow[row] * tilesPerU + lowOffset, last = rowHigh[row] * tilesPerU + highOffset;
+        // Clamped first: truncation is floor for what is not negative.
+        spans[row].first = static_cast<std::uint16_t>(static_cast<int>(std::min(std::max(first, 0.0f), columns)));
+        spans[row].last = static_cast<std::uint16_t>(static_cast<int>(std::min(std::max(last, 0.0f), columns)));
+    }
+}
+
 }  // namespace
 
 void ScreenGrid::create(std::uint32_t maxRows) {
@@ -249,10 +322,7 @@ void ScreenBounds::create(std::uint32_t maxRows) {
 }
 
 Coverage ScreenBounds::cover(const ScreenGrid& grid, const LightVolume& hostVolume) noexcept {
-    LightVolume volume = hostVolume;
-    const auto flip = [&](Vec3 v) { return Vec3{v.x * grid.flipX, v.y * grid.flipY, v.z}; };
-    volume.apexVs = flip(volume.apexVs);
-    volume.axisVs = flip(volume.axisVs);
+    const LightVolume volume = flipped(grid, hostVolume);
     const Vec3 centre = volume.apexVs;
     const double radius = (volume.range + volume.slack) * (1 + kBallSlack) + kBallSlack * length(centre);
     const double seenRadius = grid.orthographic ? radiusSeenParallel(grid, centre.z, radius) : radius;
@@ -260,80 +330,31 @@ Coverage ScreenBounds::cover(const ScreenGrid& grid, const LightVolume& hostVolu
     Coverage coverage;
     if (image.empty) return coverage;
 
-    double vLow = image.vLow, vHigh = image.vHigh;
     ConeOutline outline;
-    if (volume.spot) {
-        outline = outlineOfCone(grid, volume);
-        vLow = std::max(vLow, outline.vLow);
-        vHigh = std::min(vHigh, outline.vHigh);
-    }
-    vLow -= grid.uvSlack;
-    vHigh += grid.uvSlack;
+    if (volume.spot) outline = outlineOfCone(grid, volume);
+    const double vLow = (volume.spot ? std::max(image.vLow, outline.vLow) : image.vLow) - grid.uvSlack;
+    const double vHigh = (volume.spot ? std::min(image.vHigh, outline.vHigh) : image.vHigh) + grid.uvSlack;
     if (vHigh < grid.vMin || vLow > grid.vMax) return coverage;
     coverage.firstRow = clampRow(grid, rowOf(grid, vLow));
     coverage.lastRow = clampRow(grid, rowOf(grid, vHigh) + 1);
 
-    const double power = dot(centre, centre) - radius * radius;
-    const BallRows ball{static_cast<float>(centre.x),
-                        static_cast<float>(centre.y),
-                        static_cast<float>(centre.z),
-                        static_cast<float>(grid.orthographic ? seenRadius * seenRadius : radius * radius),
-                        static_cast<float>(std::sqrt(std::max(0.0, power))),
-                        static_cast<float>(power),
-                        static_cast<float>(grid.nearMetres)};
+    const BallRows ball = ballRows(grid, centre, radius, seenRadius);
     float *low = boundaryLow_.data(), *high = boundaryHigh_.data();
-    const bool inFront = centre.z - radius >= grid.nearMetres;
-    const auto extents = [&](std::uint32_t first, std::uint32_t last) {
-        if (grid.orthographic) return extentsParallel(grid, ball, first, last, low, high);
-        if (inFront) return extentsInFront(grid, ball, first, last, low, high);
-        extentsCut(grid, ball, first, last, low, high);
-    };
-    const std::uint32_t top = coverage.firstRow, bottom = coverage.lastRow;
     const auto boundaryIsFull = [&](std::uint32_t j) {
-        extents(j, j + 1);
+        extentsOf(grid, ball, j, j + 1, low, high);
         return low[j] <= grid.uMin && high[j] >= grid.uMax;
     };
-    const bool mayBeEverywhere = top == 0 && bottom == grid.rows && image.uLow <= grid.uMin && image.uHigh >= grid.uMax;
-    if (mayBeEverywhere && boundaryIsFull(0) && boundaryIsFull(bottom) &&
+    const bool coversSides =
+        coverage.firstRow == 0 && coverage.lastRow == grid.rows && image.uLow <= grid.uMin && image.uHigh >= grid.uMax;
+    if (coversSides && boundaryIsFull(0) && boundaryIsFull(grid.rows) &&
         (!volume.spot || cornersInside(grid, outline))) {
         coverage.everywhere = true;
         return coverage;
     }
-
-    extents(top, bottom + 1);
-    float *rowLow = rowLow_.data(), *rowHigh = rowHigh_.data();
-    for (std::uint32_t row = top; row < bottom; ++row) {
-        rowLow[row] = low[row] < low[row + 1] ? low[row] : low[row + 1];
-        rowHigh[row] = high[row] > high[row + 1] ? high[row] : high[row + 1];
-    }
-    atPeak(grid, coverage, image.vOfLow,
-           [&](std::uint32_t row) { rowLow[row] = std::min(rowLow[row], static_cast<float>(image.uLow)); });
-    atPeak(grid, coverage, image.vOfHigh,
-           [&](std::uint32_t row) { rowHigh[row] = std::max(rowHigh[row], static_cast<float>(image.uHigh)); });
-    if (volume.spot) {
-        const auto vLow32 = static_cast<float>(vLow), vHigh32 = static_cast<float>(vHigh);
-        const auto uLow32 = static_cast<float>(std::max(outline.uLow, -1e30)),
-                   uHigh32 = static_cast<float>(std::min(outline.uHigh, 1e30));
-        for (std::uint32_t row = top; row < bottom; ++row) {
-            rowLow[row] = rowLow[row] > uLow32 ? rowLow[row] : uLow32;
-            rowHigh[row] = rowHigh[row] < uHigh32 ? rowHigh[row] : uHigh32;
-        }
-        for (int i = 0; i < outline.count; ++i) {
-            cutRows(grid, coverage, outline.halfPlanes[i], vLow32, vHigh32, rowLow, rowHigh);
-        }
-    }
-
-    const auto tilesPerU = static_cast<float>(1 / grid.uPerTile);
-    const auto lowOffset = static_cast<float>((-grid.uMin - grid.uvSlack) / grid.uPerTile);
-    const auto highOffset = static_cast<float>((-grid.uMin + grid.uvSlack) / grid.uPerTile + 1);
-    const auto columns = static_cast<float>(grid.columns);
-    TileSpan* spans = spans_.data();
-    for (std::uint32_t row = top; row < bottom; ++row) {
-        const float first = rowLow[row] * tilesPerU + lowOffset, last = rowHigh[row] * tilesPerU + highOffset;
-        // Clamped to the screen, then truncated, which is floor for what is not negative.
-        spans[row].first = static_cast<std::uint16_t>(static_cast<int>(std::min(std::max(first, 0.0f), columns)));
-        spans[row].last = static_cast<std::uint16_t>(static_cast<int>(std::min(std::max(last, 0.0f), columns)));
-    }
+    extentsOf(grid, ball, coverage.firstRow, coverage.lastRow + 1, low, high);
+    joinBoundaries(grid, coverage, image, low, high, rowLow_.data(), rowHigh_.data());
+    if (volume.spot) cutByOutline(grid, coverage, outline, vLow, vHigh, rowLow_.data(), rowHigh_.data());
+    spansOf(grid, coverage, rowLow_.data(), rowHigh_.data(), spans_.data());
     return coverage;
 }
 

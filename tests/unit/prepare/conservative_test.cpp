@@ -191,15 +191,15 @@ TEST(Tight, BallsInParallelView) {
 }
 TEST(Tight, ConesInPerspective) {
     const Tightness t = measureTightness(LightType::Spot, false, true);
-    EXPECT_LT(t.set, 1.15 * t.reached);
+    EXPECT_LT(t.set, 1.06 * t.reached);
 }
 TEST(Tight, ConesAcrossTheNearPlane) {
     const Tightness t = measureTightness(LightType::Spot, false, false);
-    EXPECT_LT(t.set, 1.4 * t.reached);
+    EXPECT_LT(t.set, 1.1 * t.reached);
 }
 TEST(Tight, ConesInParallelView) {
     const Tightness t = measureTightness(LightType::Spot, true, true);
-    EXPECT_LT(t.set, 1.15 * t.reached);
+    EXPECT_LT(t.set, 1.06 * t.reached);
 }
 
 }  // namespace

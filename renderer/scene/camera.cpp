@@ -10,13 +10,16 @@ namespace gnomon::renderer {
 namespace {
 
 // Within the nearest thing one looks at in a room, yet no closer than the scene's size warrants.
-float nearDistance(const Scene& scene) { return std::clamp(0.004f * worldBounds(scene).radius(), 0.005f, 1.0f); }
+float nearDistance(const Scene& scene) {
+    return std::clamp(0.004f * worldBounds(scene).radius(), 0.005f, 1.0f);
+}
 
 glm::mat4 lookingAt(const glm::vec3& eye, const glm::vec3& target) {
     const glm::vec3 back = glm::normalize(eye - target);
     const glm::vec3 up = std::abs(back.y) > 0.9999f ? glm::vec3(0.0f, 0.0f, -1.0f) : glm::vec3(0.0f, 1.0f, 0.0f);
     const glm::vec3 right = glm::normalize(glm::cross(up, back));
-    return {glm::vec4(right, 0.0f), glm::vec4(glm::cross(back, right), 0.0f), glm::vec4(back, 0.0f), glm::vec4(eye, 1.0f)};
+    return {glm::vec4(right, 0.0f), glm::vec4(glm::cross(back, right), 0.0f), glm::vec4(back, 0.0f),
+            glm::vec4(eye, 1.0f)};
 }
 
 // The whole of `text` as a finite number.
@@ -37,9 +40,10 @@ bool readPoint(std::string_view text, glm::vec3& out) {
 }
 
 Result wrongCamera(std::string_view text) {
-    return Result::failure(Status::BadArgument,
-                           "'%.60s' is no camera: give eye:target[:degrees] as in 0,14,12:0,0,0:60, a camera's name, #index or default.",
-                           std::string(text).c_str());
+    return Result::failure(
+        Status::BadArgument,
+        "'%.60s' is no camera: give eye:target[:degrees] as in 0,14,12:0,0,0:60, a camera's name, #index or default.",
+        std::string(text).c_str());
 }
 
 Result cameraByIndex(std::string_view text, const Scene& scene, SceneCamera& camera) {
@@ -47,7 +51,8 @@ Result cameraByIndex(std::string_view text, const Scene& scene, SceneCamera& cam
     const auto [end, error] = std::from_chars(text.data() + 1, text.data() + text.size(), index);
     if (error != std::errc() || end != text.data() + text.size()) return wrongCamera(text);
     if (index >= scene.cameras.size())
-        return Result::failure(Status::BadArgument, "There is no camera #%zu: the scene has %zu.", index, scene.cameras.size());
+        return Result::failure(Status::BadArgument, "There is no camera #%zu: the scene has %zu.", index,
+                               scene.cameras.size());
     camera = scene.cameras[index];
     return {};
 }
@@ -92,13 +97,16 @@ Result parseCamera(std::string_view text, const Scene& scene, SceneCamera& camer
     }
     glm::vec3 eye, target;
     float degrees = 60.0f;
-    if (count < 2 || !readPoint(parts[0], eye) || !readPoint(parts[1], target) || (count == 3 && !readNumber(parts[2], degrees)))
+    if (count < 2 || !readPoint(parts[0], eye) || !readPoint(parts[1], target) ||
+        (count == 3 && !readNumber(parts[2], degrees)))
         return wrongCamera(text);
     const float distance = glm::length(eye - target);
     if (!(distance > 0.0f) || !std::isfinite(distance))
-        return Result::failure(Status::BadArgument, "The camera's eye and target must be two points at a finite distance.");
+        return Result::failure(Status::BadArgument,
+                               "The camera's eye and target must be two points at a finite distance.");
     if (!(degrees >= 1.0f && degrees <= 170.0f))
-        return Result::failure(Status::BadArgument, "A vertical field of view of %g degrees is outside 1 to 170.", double(degrees));
+        return Result::failure(Status::BadArgument, "A vertical field of view of %g degrees is outside 1 to 170.",
+                               double(degrees));
     SceneCamera made;
     made.name = text;
     made.worldFromCamera = lookingAt(eye, target);

@@ -19,33 +19,43 @@ T load(const std::uint8_t* bytes) {
 std::size_t componentSize(int type) {
     switch (type) {
         case TINYGLTF_COMPONENT_TYPE_BYTE:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return 1;
         case TINYGLTF_COMPONENT_TYPE_SHORT:
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return 2;
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-        case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
-        default: return 0;
+        case TINYGLTF_COMPONENT_TYPE_FLOAT:
+            return 4;
+        default:
+            return 0;
     }
 }
 
 std::size_t componentCount(int type) {
     switch (type) {
-        case TINYGLTF_TYPE_SCALAR: return 1;
-        case TINYGLTF_TYPE_VEC2: return 2;
-        case TINYGLTF_TYPE_VEC3: return 3;
-        case TINYGLTF_TYPE_VEC4: return 4;
-        case TINYGLTF_TYPE_MAT4: return 16;
-        default: return 0;  // 2x2 and 3x3 matrices are never used by what is drawn
+        case TINYGLTF_TYPE_SCALAR:
+            return 1;
+        case TINYGLTF_TYPE_VEC2:
+            return 2;
+        case TINYGLTF_TYPE_VEC3:
+            return 3;
+        case TINYGLTF_TYPE_VEC4:
+            return 4;
+        case TINYGLTF_TYPE_MAT4:
+            return 16;
+        default:
+            return 0;  // 2x2 and 3x3 matrices are never used by what is drawn
     }
 }
 
 // First byte of `count` elements within a view, or a refusal. Written so that nothing overflows.
-const std::uint8_t* checkedRange(std::span<const std::uint8_t> bytes, std::size_t offset, std::size_t count, std::size_t stride,
-                                 std::size_t elementBytes, std::string_view user) {
+const std::uint8_t* checkedRange(std::span<const std::uint8_t> bytes, std::size_t offset, std::size_t count,
+                                 std::size_t stride, std::size_t elementBytes, std::string_view user) {
     if (offset > bytes.size() || elementBytes > bytes.size() - offset ||
         (count - 1) > (bytes.size() - offset - elementBytes) / stride)
-        refuse("{} wants {} elements of {} bytes, {} apart, from byte {} of a bufferView of {} bytes", user, count, elementBytes,
-               stride, offset, bytes.size());
+        refuse("{} wants {} elements of {} bytes, {} apart, from byte {} of a bufferView of {} bytes", user, count,
+               elementBytes, stride, offset, bytes.size());
     return bytes.data() + offset;
 }
 
@@ -74,11 +84,12 @@ void applySparse(Document& document, const tinygltf::Accessor& source, Elements&
     indices.components = 1;
     indices.count = count;
     indices.stride = indices.componentBytes;
-    indices.data = checkedRange(document.view(sparse.indices.bufferView, user).bytes,
-                                static_cast<std::size_t>(sparse.indices.byteOffset), count, indices.stride, indices.stride, user);
+    indices.data =
+        checkedRange(document.view(sparse.indices.bufferView, user).bytes,
+                     static_cast<std::size_t>(sparse.indices.byteOffset), count, indices.stride, indices.stride, user);
     const std::uint8_t* values =
-        checkedRange(document.view(sparse.values.bufferView, user).bytes, static_cast<std::size_t>(sparse.values.byteOffset), count,
-                     elementBytes, elementBytes, user);
+        checkedRange(document.view(sparse.values.bufferView, user).bytes,
+                     static_cast<std::size_t>(sparse.values.byteOffset), count, elementBytes, elementBytes, user);
     makeDense(elements, elementBytes, user);
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t index = indices.unsignedValue(i, 0);
@@ -92,7 +103,8 @@ void applySparse(Document& document, const tinygltf::Accessor& source, Elements&
 float Elements::value(std::size_t element, std::size_t index) const {
     const std::uint8_t* at = data + element * stride + index * componentBytes;
     switch (componentType) {
-        case TINYGLTF_COMPONENT_TYPE_FLOAT: return load<float>(at);
+        case TINYGLTF_COMPONENT_TYPE_FLOAT:
+            return load<float>(at);
         case TINYGLTF_COMPONENT_TYPE_BYTE: {
             const auto v = static_cast<float>(load<std::int8_t>(at));
             return normalised ? std::max(v / 127.0f, -1.0f) : v;
@@ -138,8 +150,10 @@ Elements openAccessor(Document& document, int accessor, std::string_view user) {
     if (source.bufferView >= 0) {
         const BytesOfView view = document.view(source.bufferView, user);
         elements.stride = view.stride == 0 ? elementBytes : view.stride;
-        if (elements.stride < elementBytes) refuse("{} has elements of {} bytes, {} apart", user, elementBytes, elements.stride);
-        elements.data = checkedRange(view.bytes, source.byteOffset, elements.count, elements.stride, elementBytes, user);
+        if (elements.stride < elementBytes)
+            refuse("{} has elements of {} bytes, {} apart", user, elementBytes, elements.stride);
+        elements.data =
+            checkedRange(view.bytes, source.byteOffset, elements.count, elements.stride, elementBytes, user);
     } else if (!source.sparse.isSparse) {
         refuse("{} is an accessor without a bufferView", user);
     }
@@ -160,7 +174,8 @@ std::vector<std::uint32_t> readIndices(Document& document, int accessor, std::st
 
 std::vector<glm::mat4> readMatrices(Document& document, int accessor, std::string_view user) {
     const Elements elements = openAccessor(document, accessor, user);
-    if (elements.components != 16 || elements.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) refuse("{} are not 4x4 float matrices", user);
+    if (elements.components != 16 || elements.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
+        refuse("{} are not 4x4 float matrices", user);
     std::vector<glm::mat4> out(elements.count);
     for (std::size_t i = 0; i < elements.count; ++i)
         for (int c = 0; c < 16; ++c) {

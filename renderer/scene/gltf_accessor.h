@@ -1,6 +1,6 @@
 #pragma once
-// Typed reads of accessors. Every read checks type, component type, stride, count and byte range against the buffer first,
-// and only then allocates: a count of four thousand million in a file of one kilobyte costs nothing.
+// Typed reads of accessors. Every read checks type, component type, stride, count and byte range against the buffer
+// first, and only then allocates: a count of four thousand million in a file of one kilobyte costs nothing.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -11,8 +11,8 @@
 
 namespace gnomon::renderer::gltf {
 
-/// A checked accessor: `count` elements of `components` numbers, `stride` bytes apart, all within memory that is held by the
-/// document or by `storage`.
+/// A checked accessor: `count` elements of `components` numbers, `stride` bytes apart, all within memory that is held
+/// by the document or by `storage`.
 struct Elements {
     const std::uint8_t* data = nullptr;
     std::size_t count = 0, stride = 0, components = 0, componentBytes = 0;

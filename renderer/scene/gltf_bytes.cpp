@@ -15,8 +15,8 @@ constexpr int kMaxNesting = 200;  // deepest seen in real files: 12
 constexpr std::uint32_t kChunkJson = 0x4E4F534A, kChunkBinary = 0x004E4942;
 
 std::uint32_t littleEndian32(std::span<const std::uint8_t> bytes, std::size_t offset) {
-    return std::uint32_t(bytes[offset]) | std::uint32_t(bytes[offset + 1]) << 8 | std::uint32_t(bytes[offset + 2]) << 16 |
-           std::uint32_t(bytes[offset + 3]) << 24;
+    return std::uint32_t(bytes[offset]) | std::uint32_t(bytes[offset + 1]) << 8 |
+           std::uint32_t(bytes[offset + 2]) << 16 | std::uint32_t(bytes[offset + 3]) << 24;
 }
 
 int hexDigit(char c) {
@@ -30,7 +30,8 @@ std::string percentDecoded(std::string_view text) {
     std::string out;
     out.reserve(text.size());
     for (std::size_t i = 0; i < text.size(); ++i) {
-        const bool escape = text[i] == '%' && i + 2 < text.size() && hexDigit(text[i + 1]) >= 0 && hexDigit(text[i + 2]) >= 0;
+        const bool escape =
+            text[i] == '%' && i + 2 < text.size() && hexDigit(text[i + 1]) >= 0 && hexDigit(text[i + 2]) >= 0;
         if (escape) {
             out.push_back(static_cast<char>(hexDigit(text[i + 1]) * 16 + hexDigit(text[i + 2])));
             i += 2;
@@ -108,7 +109,8 @@ Container openContainer(std::span<const std::uint8_t> file) {
         const std::uint32_t chunkBytes = littleEndian32(file, offset), type = littleEndian32(file, offset + 4);
         offset += 8;
         if (chunkBytes > file.size() - offset) refuse("a chunk of the GLB file runs past the file's end");
-        if (first != (type == kChunkJson)) refuse("the GLB file must hold one JSON chunk, and it must be the first chunk");
+        if (first != (type == kChunkJson))
+            refuse("the GLB file must hold one JSON chunk, and it must be the first chunk");
         if (first) container.json = text(file.subspan(offset, chunkBytes));
         if (type == kChunkBinary && !container.binary) container.binary = file.subspan(offset, chunkBytes);
         first = false;
@@ -117,7 +119,9 @@ Container openContainer(std::span<const std::uint8_t> file) {
     return container;
 }
 
-bool isDataUri(std::string_view uri) { return uri.starts_with("data:"); }
+bool isDataUri(std::string_view uri) {
+    return uri.starts_with("data:");
+}
 
 std::optional<std::vector<std::uint8_t>> decodeDataUri(std::string_view uri) {
     const std::size_t comma = uri.find(',');

@@ -1,7 +1,7 @@
 // Opening a glTF file. The JSON is parsed once to check its shape and to take out what the loader reads by itself
-// (buffers, images) or not at all (animations), and the rest goes to tinygltf. Reasons, all met with tinygltf 2.7: it reads
-// eight bytes past a GLB whose last chunk is too long, forms addresses from unchecked image views, drops primitives that
-// it cannot parse without a word, and refuses Draco files when built without Draco.
+// (buffers, images) or not at all (animations), and the rest goes to tinygltf. Reasons, all met with tinygltf 2.7: it
+// reads eight bytes past a GLB whose last chunk is too long, forms addresses from unchecked image views, drops
+// primitives that it cannot parse without a word, and refuses Draco files when built without Draco.
 
 #include "renderer/scene/gltf_document.h"
 
@@ -19,14 +19,22 @@ using nlohmann::json;
 constexpr std::size_t kMaxNotes = 48;
 
 // Read in full.
-constexpr std::array kSupported = {"KHR_lights_punctual",    "KHR_texture_transform",      "KHR_materials_emissive_strength",
-                                   "KHR_mesh_quantization",  "KHR_draco_mesh_compression"};
+constexpr std::array kSupported = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_materials_emissive_strength",
+                                   "KHR_mesh_quantization", "KHR_draco_mesh_compression"};
 // Known, and the core material beneath is a fair picture of them.
-constexpr std::array kApproximated = {
-    "KHR_materials_unlit",        "KHR_materials_ior",          "KHR_materials_specular",    "KHR_materials_clearcoat",
-    "KHR_materials_sheen",        "KHR_materials_transmission", "KHR_materials_volume",      "KHR_materials_iridescence",
-    "KHR_materials_dispersion",   "KHR_materials_anisotropy",   "KHR_materials_variants",    "KHR_materials_diffuse_transmission",
-    "KHR_materials_pbrSpecularGlossiness"};
+constexpr std::array kApproximated = {"KHR_materials_unlit",
+                                      "KHR_materials_ior",
+                                      "KHR_materials_specular",
+                                      "KHR_materials_clearcoat",
+                                      "KHR_materials_sheen",
+                                      "KHR_materials_transmission",
+                                      "KHR_materials_volume",
+                                      "KHR_materials_iridescence",
+                                      "KHR_materials_dispersion",
+                                      "KHR_materials_anisotropy",
+                                      "KHR_materials_variants",
+                                      "KHR_materials_diffuse_transmission",
+                                      "KHR_materials_pbrSpecularGlossiness"};
 
 template <std::size_t N>
 bool contains(const std::array<const char*, N>& names, const std::string& name) {
@@ -66,7 +74,8 @@ void checkAsset(const json& root) {
     const std::string version = (*asset)["version"];
     if (!version.starts_with("2.")) refuse("the file is glTF version '{}', only 2.0 is read", version.substr(0, 20));
     const auto least = asset->find("minVersion");
-    if (least != asset->end() && *least != "2.0") refuse("the file asks for glTF version {}, only 2.0 is read", least->dump());
+    if (least != asset->end() && *least != "2.0")
+        refuse("the file asks for glTF version {}, only 2.0 is read", least->dump());
 }
 
 std::string stringMember(const json& object, const char* name) {
@@ -92,9 +101,11 @@ void prepareMeshes(json& root) {
             if (!primitive.is_object() || !primitive.contains("attributes") || !primitive["attributes"].is_object())
                 refuse("a primitive of mesh '{}' has no attributes", stringMember(mesh, "name"));
             for (const json& index : primitive["attributes"])
-                if (!index.is_number_integer()) refuse("an attribute of mesh '{}' is not an index", stringMember(mesh, "name"));
+                if (!index.is_number_integer())
+                    refuse("an attribute of mesh '{}' is not an index", stringMember(mesh, "name"));
             const auto extensions = primitive.find("extensions");
-            if (extensions != primitive.end() && extensions->is_object() && extensions->contains("KHR_draco_mesh_compression"))
+            if (extensions != primitive.end() && extensions->is_object() &&
+                extensions->contains("KHR_draco_mesh_compression"))
                 primitive.erase("indices");
         }
     }
@@ -159,7 +170,8 @@ void Document::parse(std::string_view text) {
         buffers_.push_back(std::move(buffer));
     }
     for (const json& source : root.value("images", json::array()))
-        images_.push_back({stringMember(source, "name"), stringMember(source, "uri"), indexMember(source, "bufferView")});
+        images_.push_back(
+            {stringMember(source, "name"), stringMember(source, "uri"), indexMember(source, "bufferView")});
     for (const char* name : {"buffers", "images", "animations", "extras"}) root.erase(name);
 
     const std::string rest = root.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -179,7 +191,8 @@ void Document::checkExtensions() {
         if (!contains(kSupported, name) && !contains(kApproximated, name))
             refuse("the file requires the extension '{}', which is not supported", name.substr(0, 80));
     for (const std::string& name : model_.extensionsUsed)
-        if (!contains(kSupported, name) && !name.empty()) note(fmt::format("The extension '{}' is not or only partly read.", name));
+        if (!contains(kSupported, name) && !name.empty())
+            note(fmt::format("The extension '{}' is not or only partly read.", name));
 }
 
 std::span<const std::uint8_t> Document::bufferBytes(int index, std::string_view user) {
@@ -188,7 +201,8 @@ std::span<const std::uint8_t> Document::bufferBytes(int index, std::string_view 
     if (buffer.loaded) return buffer.bytes;
     if (buffer.byteLength == 0) refuse("buffer {} has no valid byteLength", index);
     if (buffer.uri.empty()) {
-        if (index != 0 || !binaryChunk_) refuse("buffer {}, which {} needs, has neither a file nor a binary chunk", index, user);
+        if (index != 0 || !binaryChunk_)
+            refuse("buffer {}, which {} needs, has neither a file nor a binary chunk", index, user);
         buffer.bytes = *binaryChunk_;
     } else {
         if (isDataUri(buffer.uri)) {

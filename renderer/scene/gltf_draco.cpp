@@ -21,7 +21,8 @@ DracoPrimitive::DracoPrimitive(Document& document, const tinygltf::Value& extens
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
     if (!decoded.ok()) refuse("the Draco data of {} cannot be decoded: {}", user, decoded.status().error_msg_string());
     mesh_ = std::move(decoded).value();
-    if (!mesh_ || mesh_->num_points() == 0 || mesh_->num_faces() == 0) refuse("the Draco data of {} holds no triangles", user);
+    if (!mesh_ || mesh_->num_points() == 0 || mesh_->num_faces() == 0)
+        refuse("the Draco data of {} holds no triangles", user);
     for (const auto& [name, id] : attributeIds_)
         if (id < 0 || !mesh_->GetAttributeByUniqueId(static_cast<std::uint32_t>(id)))
             refuse("the Draco data of {} lacks the attribute {} ({})", user, name, id);
@@ -29,7 +30,9 @@ DracoPrimitive::DracoPrimitive(Document& document, const tinygltf::Value& extens
 
 DracoPrimitive::~DracoPrimitive() = default;
 
-std::size_t DracoPrimitive::vertexCount() const { return mesh_->num_points(); }
+std::size_t DracoPrimitive::vertexCount() const {
+    return mesh_->num_points();
+}
 
 std::vector<std::uint32_t> DracoPrimitive::indices() const {
     std::vector<std::uint32_t> out;
@@ -40,18 +43,22 @@ std::vector<std::uint32_t> DracoPrimitive::indices() const {
 }
 
 bool DracoPrimitive::has(const std::string& attribute) const {
-    return std::any_of(attributeIds_.begin(), attributeIds_.end(), [&](const auto& entry) { return entry.first == attribute; });
+    return std::any_of(attributeIds_.begin(), attributeIds_.end(),
+                       [&](const auto& entry) { return entry.first == attribute; });
 }
 
-std::vector<float> DracoPrimitive::read(const std::string& attribute, int components, float fill, std::string_view user) const {
-    const auto entry = std::find_if(attributeIds_.begin(), attributeIds_.end(), [&](const auto& e) { return e.first == attribute; });
+std::vector<float> DracoPrimitive::read(const std::string& attribute, int components, float fill,
+                                        std::string_view user) const {
+    const auto entry =
+        std::find_if(attributeIds_.begin(), attributeIds_.end(), [&](const auto& e) { return e.first == attribute; });
     const draco::PointAttribute* source = mesh_->GetAttributeByUniqueId(static_cast<std::uint32_t>(entry->second));
     const int present = std::min<int>(components, source->num_components());
     std::vector<float> out(vertexCount() * static_cast<std::size_t>(components), fill);
     for (draco::PointIndex point(0); point < mesh_->num_points(); ++point) {
         const draco::AttributeValueIndex value = source->mapped_index(point);
         float* target = out.data() + std::size_t(point.value()) * static_cast<std::size_t>(components);
-        if (value.value() >= source->size() || !source->ConvertValue<float>(value, static_cast<std::int8_t>(present), target))
+        if (value.value() >= source->size() ||
+            !source->ConvertValue<float>(value, static_cast<std::int8_t>(present), target))
             refuse("the attribute {} of {} cannot be read from its Draco data", attribute, user);
     }
     return out;

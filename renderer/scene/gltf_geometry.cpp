@@ -42,7 +42,8 @@ public:
             for (std::size_t i = 0; i < out.size(); ++i)
                 for (int c = 0; c < N; ++c) out[i][c] = flat[i * N + static_cast<std::size_t>(c)];
         } else {
-            out = readVectors<N>(document_, source_.attributes.at(name), leastComponents, glm::vec<N, float>(fill), what);
+            out =
+                readVectors<N>(document_, source_.attributes.at(name), leastComponents, glm::vec<N, float>(fill), what);
         }
         if (vertexCount_ == 0) vertexCount_ = out.size();
         if (out.size() != vertexCount_) refuse("{} has {} elements for {} vertices", what, out.size(), vertexCount_);
@@ -145,7 +146,9 @@ void repairAttributes(Document& document, Primitive& primitive, const std::strin
         }
         colour = glm::max(colour, glm::vec4(0.0f));
     }
-    if (badNumber) document.note(fmt::format("{} has texture coordinates or colours that are not finite; they were replaced.", user));
+    if (badNumber)
+        document.note(
+            fmt::format("{} has texture coordinates or colours that are not finite; they were replaced.", user));
 }
 
 template <class T>
@@ -182,14 +185,16 @@ void dropUnusedVertices(LoadedPrimitive& loaded) {
 void readSkin(Reader& reader, LoadedPrimitive& loaded, Document& document, const std::string& user) {
     if (!reader.has("JOINTS_0")) return;
     if (!reader.has("WEIGHTS_0")) refuse("{} has JOINTS_0 without WEIGHTS_0", user);
-    if (reader.has("JOINTS_1")) document.note(fmt::format("{} has more than four joints per vertex; four are used.", user));
+    if (reader.has("JOINTS_1"))
+        document.note(fmt::format("{} has more than four joints per vertex; four are used.", user));
     const std::vector<glm::vec4> joints = reader.read<4>("JOINTS_0", 4);
     loaded.weights = reader.read<4>("WEIGHTS_0", 4);
     loaded.joints.resize(joints.size());
     for (std::size_t i = 0; i < joints.size(); ++i) {
         glm::vec4& weight = loaded.weights[i];
         for (int c = 0; c < 4; ++c) {
-            if (!(joints[i][c] >= 0.0f && joints[i][c] <= 65535.0f)) refuse("{} has a joint index that is no index", user);
+            if (!(joints[i][c] >= 0.0f && joints[i][c] <= 65535.0f))
+                refuse("{} has a joint index that is no index", user);
             loaded.joints[i][c] = static_cast<std::uint16_t>(joints[i][c]);
             if (!(weight[c] >= 0.0f && weight[c] <= 1.0e6f)) refuse("{} has a joint weight of {}", user, weight[c]);
         }
@@ -205,8 +210,10 @@ void computeBounds(Primitive& primitive) {
     for (std::uint32_t index : primitive.indices) primitive.bounds.add(primitive.positions[index]);
 }
 
-std::optional<LoadedPrimitive> loadPrimitive(Document& document, const tinygltf::Primitive& source, const std::string& user) {
-    if (source.mode < 0 || source.mode > TINYGLTF_MODE_TRIANGLE_FAN) refuse("{} has the unknown mode {}", user, source.mode);
+std::optional<LoadedPrimitive> loadPrimitive(Document& document, const tinygltf::Primitive& source,
+                                             const std::string& user) {
+    if (source.mode < 0 || source.mode > TINYGLTF_MODE_TRIANGLE_FAN)
+        refuse("{} has the unknown mode {}", user, source.mode);
     if (source.mode < TINYGLTF_MODE_TRIANGLES) {
         document.note(fmt::format("{} holds points or lines and is not drawn.", user));
         return std::nullopt;
@@ -217,9 +224,11 @@ std::optional<LoadedPrimitive> loadPrimitive(Document& document, const tinygltf:
     Primitive& primitive = loaded.primitive;
     primitive.positions = reader.read<3>("POSITION", 3);
     for (const glm::vec3& p : primitive.positions)
-        if (!(glm::length(p) < kMaxCoordinate)) refuse("{} has a position that is not finite or beyond {:g}", user, kMaxCoordinate);
+        if (!(glm::length(p) < kMaxCoordinate))
+            refuse("{} has a position that is not finite or beyond {:g}", user, kMaxCoordinate);
     const std::vector<std::uint32_t> indices = reader.indices();
-    const int mode = reader.draco() ? TINYGLTF_MODE_TRIANGLES : source.mode;  // Draco holds lists, whatever the mode says
+    const int mode =
+        reader.draco() ? TINYGLTF_MODE_TRIANGLES : source.mode;  // Draco holds lists, whatever the mode says
     if (mode == TINYGLTF_MODE_TRIANGLES && indices.size() % 3 != 0)
         document.note(fmt::format("{} ends with an incomplete triangle, which is left out.", user));
     primitive.indices = triangulated(indices, mode);

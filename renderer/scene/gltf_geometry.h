@@ -17,9 +17,10 @@ struct LoadedPrimitive {
     std::vector<glm::vec4> weights;    // same length as joints; each sums to one
 };
 
-/// Nothing (and a note) for points, lines and primitives without a whole triangle; a refusal for broken ones. The material
-/// is left to the caller.
-std::optional<LoadedPrimitive> loadPrimitive(Document& document, const tinygltf::Primitive& source, const std::string& user);
+/// Nothing (and a note) for points, lines and primitives without a whole triangle; a refusal for broken ones. The
+/// material is left to the caller.
+std::optional<LoadedPrimitive> loadPrimitive(Document& document, const tinygltf::Primitive& source,
+                                             const std::string& user);
 
 /// Sets primitive.bounds from the positions that the indices use.
 void computeBounds(Primitive& primitive);

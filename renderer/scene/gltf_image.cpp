@@ -35,10 +35,12 @@ bool decodeImage(std::span<const std::uint8_t> encoded, bool mirrorU, bool mirro
     }
     int width = 0, height = 0, channels = 0;
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-        stbi_load_from_memory(encoded.data(), static_cast<int>(encoded.size()), &width, &height, &channels, 4), stbi_image_free);
+        stbi_load_from_memory(encoded.data(), static_cast<int>(encoded.size()), &width, &height, &channels, 4),
+        stbi_image_free);
     if (!pixels || width <= 0 || height <= 0) {
         const char* why = stbi_failure_reason();
-        reason = why ? std::string("it is no PNG or JPEG that can be read (") + why + ")" : "it is no PNG or JPEG that can be read";
+        reason = why ? std::string("it is no PNG or JPEG that can be read (") + why + ")"
+                     : "it is no PNG or JPEG that can be read";
         return false;
     }
     const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);

@@ -45,7 +45,8 @@ void addLight(Document& document, const PlacedNode& node, Scene& scene) {
     light.position = glm::vec3(node.worldFromNode[3]);
     const glm::vec3 backwards(node.worldFromNode[2]);
     const float length = glm::length(backwards);
-    if (light.kind != LightKind::Point && !(length > 1.0e-12f)) refuse("{} has a scale of zero, so {} has no direction", carrierName, user);
+    if (light.kind != LightKind::Point && !(length > 1.0e-12f))
+        refuse("{} has a scale of zero, so {} has no direction", carrierName, user);
     if (light.kind != LightKind::Point) light.direction = -backwards / length;
     if (!source.color.empty()) {
         if (source.color.size() != 3) refuse("{} has a colour of {} numbers", user, source.color.size());
@@ -73,10 +74,11 @@ void addCamera(Document& document, const PlacedNode& node, Scene& scene) {
         // Scale and shear of the node do not belong to the view.
         const glm::vec3 z(node.worldFromNode[2]), y(node.worldFromNode[1]);
         const glm::vec3 x = glm::cross(y, z);
-        if (!(glm::length(z) > 0.0f) || !(glm::length(x) > 0.0f)) refuse("{} has a transform without an inverse", carrierName);
+        if (!(glm::length(z) > 0.0f) || !(glm::length(x) > 0.0f))
+            refuse("{} has a transform without an inverse", carrierName);
         const glm::vec3 right = glm::normalize(x), back = glm::normalize(z);
-        camera.worldFromCamera = glm::mat4(glm::vec4(right, 0.0f), glm::vec4(glm::cross(back, right), 0.0f), glm::vec4(back, 0.0f),
-                                           node.worldFromNode[3]);
+        camera.worldFromCamera = glm::mat4(glm::vec4(right, 0.0f), glm::vec4(glm::cross(back, right), 0.0f),
+                                           glm::vec4(back, 0.0f), node.worldFromNode[3]);
         double nearest = source.perspective.znear, farthest = source.perspective.zfar;
         if (source.type == "orthographic") {
             camera.orthographic = true;

@@ -43,7 +43,8 @@ Material MaterialLoader::load(const tinygltf::Material& source, const std::strin
     out.name = source.name;
     const auto& pbr = source.pbrMetallicRoughness;
     if (pbr.baseColorFactor.size() == 4)
-        for (int c = 0; c < 4; ++c) out.baseColour[c] = factor(pbr.baseColorFactor[static_cast<std::size_t>(c)], 0.0f, 1.0f);
+        for (int c = 0; c < 4; ++c)
+            out.baseColour[c] = factor(pbr.baseColorFactor[static_cast<std::size_t>(c)], 0.0f, 1.0f);
     out.metallic = factor(pbr.metallicFactor, 0.0f, 1.0f);
     out.roughness = factor(pbr.roughnessFactor, 0.0f, 1.0f);
     out.baseColourTexture = texture(pbr.baseColorTexture, user);
@@ -64,7 +65,8 @@ Material MaterialLoader::load(const tinygltf::Material& source, const std::strin
     if (const auto* glossy = extension(source.extensions, "KHR_materials_pbrSpecularGlossiness"))
         specularGlossiness(*glossy, out, user);
     const tinygltf::Value* flag = member(source.extras, "subsurface");
-    out.subsurface = (flag && flag->IsBool() && flag->Get<bool>()) || source.extensions.contains("KHR_materials_transmission") ||
+    out.subsurface = (flag && flag->IsBool() && flag->Get<bool>()) ||
+                     source.extensions.contains("KHR_materials_transmission") ||
                      source.extensions.contains("KHR_materials_diffuse_transmission");
     return out;
 }
@@ -107,16 +109,19 @@ TextureUse MaterialLoader::texture(int index, int texcoord, const tinygltf::Valu
         texcoord = integer(*transform, "texCoord", texcoord, user);
         offset = {toFloat(move[0], user), toFloat(move[1], user)};
         // Counter-clockwise in a space whose v points down. Columns: images of u and v.
-        matrix = glm::mat2(glm::vec2(cosine, -sine) * toFloat(scale[0], user), glm::vec2(sine, cosine) * toFloat(scale[1], user));
+        matrix = glm::mat2(glm::vec2(cosine, -sine) * toFloat(scale[0], user),
+                           glm::vec2(sine, cosine) * toFloat(scale[1], user));
     }
     if (texcoord < 0 || texcoord > 1) {
-        document_.note(fmt::format("Texture {} of {} uses TEXCOORD_{}; only 0 and 1 are read, so it is left out.", index, user, texcoord));
+        document_.note(fmt::format("Texture {} of {} uses TEXCOORD_{}; only 0 and 1 are read, so it is left out.",
+                                   index, user, texcoord));
         return out;
     }
     out.texcoord = static_cast<std::uint32_t>(texcoord);
     bool mirrorU = false, mirrorV = false;
     if (source.sampler != -1) {
-        const tinygltf::Sampler& sampler = at(document_.model().samplers, source.sampler, "sampler", fmt::format("texture {}", index));
+        const tinygltf::Sampler& sampler =
+            at(document_.model().samplers, source.sampler, "sampler", fmt::format("texture {}", index));
         out.repeatU = sampler.wrapS != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
         out.repeatV = sampler.wrapT != TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
         mirrorU = sampler.wrapS == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
@@ -164,7 +169,8 @@ void MaterialLoader::decodeImages() {
         }
     };
     {
-        const std::size_t helpers = std::min<std::size_t>({std::max(1u, std::thread::hardware_concurrency()) - 1, jobs.size(), 15});
+        const std::size_t helpers =
+            std::min<std::size_t>({std::max(1u, std::thread::hardware_concurrency()) - 1, jobs.size(), 15});
         std::vector<std::jthread> threads;
         for (std::size_t i = 0; i < helpers; ++i) threads.emplace_back(work);
         work();
@@ -180,8 +186,8 @@ void MaterialLoader::decodeImages() {
         scene_.images.push_back(std::move(jobs[i].image));
     }
     for (Material& material : scene_.materials)
-        for (TextureUse* use : {&material.baseColourTexture, &material.metallicRoughnessTexture, &material.normalTexture,
-                                &material.emissiveTexture})
+        for (TextureUse* use : {&material.baseColourTexture, &material.metallicRoughnessTexture,
+                                &material.normalTexture, &material.emissiveTexture})
             if (use->image != kNone) use->image = finalSlot[use->image];
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// glTF materials, textures, samplers and images into Scene::materials and Scene::images, each loaded once and on demand.
+// glTF materials, textures, samplers and images into Scene::materials and Scene::images, each loaded once and on
+// demand.
 
 #include <map>
 #include <tuple>

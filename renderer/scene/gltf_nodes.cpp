@@ -24,8 +24,8 @@ glm::mat4 localTransform(const tinygltf::Node& node, const std::string& user) {
     glm::quat rotation(1.0f, 0.0f, 0.0f, 0.0f);
     if (!node.rotation.empty()) {
         if (node.rotation.size() != 4) refuse("the rotation of {} has {} numbers", user, node.rotation.size());
-        const glm::vec4 q(toFloat(node.rotation[0], user), toFloat(node.rotation[1], user), toFloat(node.rotation[2], user),
-                          toFloat(node.rotation[3], user));
+        const glm::vec4 q(toFloat(node.rotation[0], user), toFloat(node.rotation[1], user),
+                          toFloat(node.rotation[2], user), toFloat(node.rotation[3], user));
         const float length = glm::length(q);
         if (!(length > 1.0e-6f) || !std::isfinite(length)) refuse("the rotation of {} is no quaternion", user);
         rotation = glm::quat(q.w / length, q.x / length, q.y / length, q.z / length);
@@ -37,17 +37,21 @@ glm::mat4 localTransform(const tinygltf::Node& node, const std::string& user) {
 
 void checkFinite(const glm::mat4& matrix, const std::string& user) {
     for (int i = 0; i < 16; ++i)
-        if (!(std::abs(matrix[i / 4][i % 4]) < 1.0e30f)) refuse("the transform of {} leaves the range of a float", user);
+        if (!(std::abs(matrix[i / 4][i % 4]) < 1.0e30f))
+            refuse("the transform of {} leaves the range of a float", user);
 }
 
 std::vector<int> sceneRoots(Document& document) {
     const tinygltf::Model& model = document.model();
-    if (!model.scenes.empty()) return at(model.scenes, model.defaultScene == -1 ? 0 : model.defaultScene, "scene", "the file").nodes;
-    if (model.defaultScene != -1) refuse("the file's default scene is {}, but the file has no scenes", model.defaultScene);
+    if (!model.scenes.empty())
+        return at(model.scenes, model.defaultScene == -1 ? 0 : model.defaultScene, "scene", "the file").nodes;
+    if (model.defaultScene != -1)
+        refuse("the file's default scene is {}, but the file has no scenes", model.defaultScene);
     std::vector<bool> isChild(model.nodes.size(), false);
     for (const tinygltf::Node& node : model.nodes)
         for (int child : node.children)
-            if (child >= 0 && static_cast<std::size_t>(child) < isChild.size()) isChild[static_cast<std::size_t>(child)] = true;
+            if (child >= 0 && static_cast<std::size_t>(child) < isChild.size())
+                isChild[static_cast<std::size_t>(child)] = true;
     std::vector<int> roots;
     for (std::size_t i = 0; i < isChild.size(); ++i)
         if (!isChild[i]) roots.push_back(static_cast<int>(i));
@@ -95,7 +99,8 @@ NodeTransforms::NodeTransforms(Document& document) : document_(document), parent
     const auto& nodes = document.model().nodes;
     for (std::size_t i = 0; i < nodes.size(); ++i)
         for (int child : nodes[i].children)
-            if (child >= 0 && static_cast<std::size_t>(child) < parents_.size()) parents_[static_cast<std::size_t>(child)] = static_cast<int>(i);
+            if (child >= 0 && static_cast<std::size_t>(child) < parents_.size())
+                parents_[static_cast<std::size_t>(child)] = static_cast<int>(i);
 }
 
 glm::mat4 NodeTransforms::worldFromNode(int index, std::string_view user) const {

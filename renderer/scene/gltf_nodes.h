@@ -1,5 +1,6 @@
 #pragma once
-// The node hierarchy: transforms, and which nodes the chosen scene draws. No step recurses, and no node is reached twice.
+// The node hierarchy: transforms, and which nodes the chosen scene draws. No step recurses, and no node is reached
+// twice.
 
 #include <glm/glm.hpp>
 #include <string>
@@ -17,7 +18,8 @@ struct PlacedNode {
 /// "node 3 'Wheel'"
 std::string nodeName(const Document& document, int index);
 
-/// Nodes of the default scene in depth-first order. Without scenes, all roots; refuses loops and nodes with two parents.
+/// Nodes of the default scene in depth-first order. Without scenes, all roots; refuses loops and nodes with two
+/// parents.
 std::vector<PlacedNode> placeNodes(Document& document);
 
 /// World transforms of any nodes, inside the scene or not, for joints; refuses loops.

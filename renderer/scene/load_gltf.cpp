@@ -31,7 +31,8 @@ public:
             addMesh(node);
         }
         if (document_.model().nodes.empty()) placeAllMeshes();
-        if (scene_.instances.empty() && scene_.lights.empty()) refuse("the scene is empty: it holds neither triangles nor lights");
+        if (scene_.instances.empty() && scene_.lights.empty())
+            refuse("the scene is empty: it holds neither triangles nor lights");
         noteDarkLights();
         if (scene_.materials.empty()) materials_.use(-1, "the scene");
         materials_.decodeImages();
@@ -71,12 +72,14 @@ private:
         const std::size_t slot = loadMesh(source.mesh, user);
         if (loaded_[slot].primitives.empty()) return;
         const bool skinned = source.skin != -1 && !loaded_[slot].primitives.front().joints.empty();
-        if (source.skin != -1 && !skinned) document_.note(fmt::format("{} has a skin, but its mesh has no joints; it is drawn rigid.", user));
+        if (source.skin != -1 && !skinned)
+            document_.note(fmt::format("{} has a skin, but its mesh has no joints; it is drawn rigid.", user));
         if (skinned) return addSkinned(source, loaded_[slot], user);
         addInstance(slot, source.name, node.worldFromNode, user);
     }
 
-    void addInstance(std::size_t slot, const std::string& name, const glm::mat4& worldFromObject, const std::string& user) {
+    void addInstance(std::size_t slot, const std::string& name, const glm::mat4& worldFromObject,
+                     const std::string& user) {
         LoadedMesh& mesh = loaded_[slot];
         if (!(std::abs(glm::determinant(glm::mat3(worldFromObject))) > 1.0e-30f)) {
             document_.note(fmt::format("{} has a scale of zero and is not drawn.", user));
@@ -85,7 +88,8 @@ private:
         for (const LoadedPrimitive& primitive : mesh.primitives) {
             const Bounds& b = primitive.primitive.bounds;
             for (int corner = 0; corner < 8; ++corner) {
-                const glm::vec3 p(corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y, corner & 4 ? b.max.z : b.min.z);
+                const glm::vec3 p(corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y,
+                                  corner & 4 ? b.max.z : b.min.z);
                 if (!(glm::length(glm::vec3(worldFromObject * glm::vec4(p, 1.0f))) < 1.0e15f))
                     refuse("{} is placed beyond 1e15 units from the origin", user);
             }
@@ -103,7 +107,8 @@ private:
         std::vector<glm::mat4> bind(skin.joints.size(), glm::mat4(1.0f));
         if (skin.inverseBindMatrices != -1) {
             auto read = readMatrices(document_, skin.inverseBindMatrices, name);
-            if (read.size() < skin.joints.size()) refuse("{} are {} for {} joints", name, read.size(), skin.joints.size());
+            if (read.size() < skin.joints.size())
+                refuse("{} are {} for {} joints", name, read.size(), skin.joints.size());
             bind = std::move(read);
         }
         for (std::size_t i = 0; i < skin.joints.size(); ++i)
@@ -112,26 +117,29 @@ private:
         return bind;
     }
 
-    // The pose that the nodes store, applied once: world-space vertices under an identity instance (the node's own transform
-    // does not count for a skinned mesh, glTF 2.0 section 3.7.3.3).
+    // The pose that the nodes store, applied once: world-space vertices under an identity instance (the node's own
+    // transform does not count for a skinned mesh, glTF 2.0 section 3.7.3.3).
     void addSkinned(const tinygltf::Node& node, const LoadedMesh& source, const std::string& user) {
         const std::vector<glm::mat4> joints = jointMatrices(node.skin, user);
         Mesh mesh{source.name, {}};
         for (const LoadedPrimitive& loaded : source.primitives) {
             if (loaded.joints.empty()) refuse("{} has a skin, but a primitive of its mesh has no joints", user);
             skinnedVertices_ += loaded.joints.size();
-            if (skinnedVertices_ > kMaxSkinnedVertices) refuse("the scene has more than {} skinned vertices", kMaxSkinnedVertices);
+            if (skinnedVertices_ > kMaxSkinnedVertices)
+                refuse("the scene has more than {} skinned vertices", kMaxSkinnedVertices);
             Primitive posed = loaded.primitive;
             for (std::size_t i = 0; i < posed.positions.size(); ++i) {
                 glm::mat4 blend(0.0f);
                 for (int c = 0; c < 4; ++c) {
                     if (loaded.weights[i][c] == 0.0f) continue;
                     const std::size_t joint = loaded.joints[i][c];
-                    if (joint >= joints.size()) refuse("a vertex of {} refers to joint {} of {}", user, joint, joints.size());
+                    if (joint >= joints.size())
+                        refuse("a vertex of {} refers to joint {} of {}", user, joint, joints.size());
                     blend += loaded.weights[i][c] * joints[joint];
                 }
                 posed.positions[i] = glm::vec3(blend * glm::vec4(posed.positions[i], 1.0f));
-                if (!(glm::length(posed.positions[i]) < 1.0e15f)) refuse("{} is posed beyond 1e15 units from the origin", user);
+                if (!(glm::length(posed.positions[i]) < 1.0e15f))
+                    refuse("{} is posed beyond 1e15 units from the origin", user);
                 turnDirections(posed, i, glm::mat3(blend));
             }
             computeBounds(posed);
@@ -149,7 +157,8 @@ private:
             return length > 0.0f && std::isfinite(length) ? to / length : from;
         };
         // Cofactors: the inverse transpose up to a factor, and defined for every matrix.
-        const glm::mat3 cofactor(glm::cross(blend[1], blend[2]), glm::cross(blend[2], blend[0]), glm::cross(blend[0], blend[1]));
+        const glm::mat3 cofactor(glm::cross(blend[1], blend[2]), glm::cross(blend[2], blend[0]),
+                                 glm::cross(blend[0], blend[1]));
         if (!primitive.normals.empty()) primitive.normals[vertex] = turned(primitive.normals[vertex], cofactor);
         if (!primitive.tangents.empty()) {
             glm::vec4& tangent = primitive.tangents[vertex];
@@ -162,12 +171,15 @@ private:
             const std::size_t slot = loadMesh(static_cast<int>(i), "the file");
             if (!loaded_[slot].primitives.empty()) addInstance(slot, loaded_[slot].name, glm::mat4(1.0f), "the file");
         }
-        if (!scene_.instances.empty()) document_.note("The file has no nodes; every mesh is drawn once, where it was modelled.");
+        if (!scene_.instances.empty())
+            document_.note("The file has no nodes; every mesh is drawn once, where it was modelled.");
     }
 
     void noteDarkLights() {
-        const auto dark = std::count_if(scene_.lights.begin(), scene_.lights.end(), [](const SceneLight& l) { return l.intensity == 0.0f; });
-        if (dark > 0) document_.note(fmt::format("{} of {} lights have an intensity of zero.", dark, scene_.lights.size()));
+        const auto dark = std::count_if(scene_.lights.begin(), scene_.lights.end(),
+                                        [](const SceneLight& l) { return l.intensity == 0.0f; });
+        if (dark > 0)
+            document_.note(fmt::format("{} of {} lights have an intensity of zero.", dark, scene_.lights.size()));
     }
 
     void finishMesh(LoadedMesh& source) {

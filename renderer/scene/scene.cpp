@@ -9,7 +9,8 @@ Bounds worldBounds(const Scene& scene) {
             const Bounds& b = primitive.bounds;
             if (b.empty()) continue;
             for (int corner = 0; corner < 8; ++corner) {
-                const glm::vec3 p(corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y, corner & 4 ? b.max.z : b.min.z);
+                const glm::vec3 p(corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y,
+                                  corner & 4 ? b.max.z : b.min.z);
                 world.add(glm::vec3(instance.worldFromObject * glm::vec4(p, 1.0f)));
             }
         }

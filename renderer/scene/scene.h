@@ -37,7 +37,7 @@ struct Image {
 // KHR_texture_transform folded into a 2x3 matrix: uv' = (m00 m01; m10 m11) * uv + offset.
 struct TextureUse {
     std::uint32_t image = kNone;
-    std::uint32_t texcoord = 0;  // 0 or 1
+    std::uint32_t texcoord = 0;           // 0 or 1
     bool repeatU = true, repeatV = true;  // else clamped (mirrored repeat is baked into the image)
     bool linear = true;
     glm::mat2 uvTransform{1.0f};
@@ -48,14 +48,14 @@ enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
 
 struct Material {
     std::string name;
-    glm::vec4 baseColour{1.0f};  // linear
+    glm::vec4 baseColour{1.0f};    // linear
     TextureUse baseColourTexture;  // sRGB
     float metallic = 1.0f, roughness = 1.0f;
     TextureUse metallicRoughnessTexture;  // linear; green roughness, blue metallic
     TextureUse normalTexture;             // linear
     float normalScale = 1.0f;
-    glm::vec3 emissive{0.0f};  // linear, factor times KHR_materials_emissive_strength
-    TextureUse emissiveTexture;  // sRGB
+    glm::vec3 emissive{0.0f};                 // linear, factor times KHR_materials_emissive_strength
+    TextureUse emissiveTexture;               // sRGB
     AlphaMode alphaMode = AlphaMode::Opaque;  // Blend is drawn as Mask with a cut-off of 0.5 by the reference renderer
     float alphaCutoff = 0.5f;
     bool doubleSided = false;
@@ -65,10 +65,10 @@ struct Material {
 // One indexed triangle list with one material. All attribute arrays have the length of positions or are empty.
 struct Primitive {
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;    // empty: flat
-    std::vector<glm::vec4> tangents;   // w: handedness; empty: derived from uv by the shader
+    std::vector<glm::vec3> normals;   // empty: flat
+    std::vector<glm::vec4> tangents;  // w: handedness; empty: derived from uv by the shader
     std::vector<glm::vec2> texcoords[2];
-    std::vector<glm::vec4> colours;    // linear; empty: white
+    std::vector<glm::vec4> colours;      // linear; empty: white
     std::vector<std::uint32_t> indices;  // multiple of three, each below positions.size()
     std::uint32_t material = 0;
     Bounds bounds;  // of the positions that indices use, object space
@@ -98,11 +98,11 @@ struct SceneLight {
     LightKind kind = LightKind::Point;
     glm::vec3 position{0.0f};
     glm::vec3 direction{0.0f, -1.0f, 0.0f};  // unit, the way the light travels
-    glm::vec3 colour{1.0f};  // linear
+    glm::vec3 colour{1.0f};                  // linear
     float intensity = 1.0f;
-    float rangeMetres = 0.0f;  // 0: none given
+    float rangeMetres = 0.0f;                                    // 0: none given
     float innerConeAngle = 0.0f, outerConeAngle = 0.785398163f;  // half-angles, radians
-    float sourceRadius = 0.0f;  // metres, directional: radians; 0: none given
+    float sourceRadius = 0.0f;                                   // metres, directional: radians; 0: none given
     bool casts = true;
 };
 
@@ -110,7 +110,7 @@ struct SceneCamera {
     std::string name;
     glm::mat4 worldFromCamera{1.0f};  // looks down its -z
     bool orthographic = false;
-    float verticalFieldOfView = 0.9f;  // radians
+    float verticalFieldOfView = 0.9f;     // radians
     float orthographicHalfHeight = 1.0f;  // metres
     float nearMetres = 0.05f;
     float farMetres = std::numeric_limits<float>::infinity();
@@ -127,7 +127,7 @@ struct Scene {
     glm::vec3 skyColour{0.02f, 0.03f, 0.05f};     // ambient from above and background, W/(m^2 sr) up to exposure
     glm::vec3 groundColour{0.01f, 0.01f, 0.01f};  // ambient from below
     std::optional<float> exposureEv100;           // empty: from the picture
-    std::vector<std::string> notes;  // what a loader left out or repaired, one sentence each
+    std::vector<std::string> notes;               // what a loader left out or repaired, one sentence each
 };
 
 /// World bounds of everything that is drawn; empty for a scene without geometry.

@@ -46,8 +46,8 @@ inline std::vector<std::uint8_t> triangleBytes() {
 }
 
 // JSON of one triangle around the given buffer object; `more` goes into the root, `primitive` into the primitive.
-inline std::string triangleJson(const std::string& buffer, const std::string& more = "", const std::string& primitive = "",
-                                const std::string& nodes = R"([{"mesh":0}])") {
+inline std::string triangleJson(const std::string& buffer, const std::string& more = "",
+                                const std::string& primitive = "", const std::string& nodes = R"([{"mesh":0}])") {
     return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
            R"(,"meshes":[{"name":"tri","primitives":[{"attributes":{"POSITION":0},"indices":1)" + primitive +
            R"(}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
@@ -57,7 +57,8 @@ inline std::string triangleJson(const std::string& buffer, const std::string& mo
 }
 
 inline std::string dataBuffer(const std::vector<std::uint8_t>& bytes) {
-    return R"({"byteLength":)" + std::to_string(bytes.size()) + R"(,"uri":"data:application/octet-stream;base64,)" + base64(bytes) + "\"}";
+    return R"({"byteLength":)" + std::to_string(bytes.size()) + R"(,"uri":"data:application/octet-stream;base64,)" +
+           base64(bytes) + "\"}";
 }
 
 inline std::string triangleGltf(const std::string& more = "", const std::string& primitive = "",
@@ -76,7 +77,9 @@ inline std::string glb(std::string json, const std::vector<std::uint8_t>& binary
     return std::string(bytes.begin(), bytes.end());
 }
 
-inline std::string triangleGlb() { return glb(triangleJson(R"({"byteLength":44})"), triangleBytes()); }
+inline std::string triangleGlb() {
+    return glb(triangleJson(R"({"byteLength":44})"), triangleBytes());
+}
 
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
@@ -87,8 +90,9 @@ inline std::string replaced(std::string text, const std::string& from, const std
 inline gnomon::Result loadText(const std::string& text, Scene& scene) {
     static std::atomic<int> number = 0;
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    const std::filesystem::path path = std::filesystem::path(testing::TempDir()) /
-                                       (std::string("gnomon_scene_") + test->name() + std::to_string(number++) + ".gltf");
+    const std::filesystem::path path =
+        std::filesystem::path(testing::TempDir()) /
+        (std::string("gnomon_scene_") + test->name() + std::to_string(number++) + ".gltf");
     std::ofstream(path, std::ios::binary) << text;
     const gnomon::Result result = loadGltf(path, scene);
     std::filesystem::remove(path);
@@ -111,12 +115,14 @@ inline void expectSound(const Scene& scene) {
             ASSERT_FALSE(p.indices.empty());
             for (std::uint32_t index : p.indices) ASSERT_LT(index, count);
             for (const glm::vec3& v : p.positions) ASSERT_TRUE(std::isfinite(v.x + v.y + v.z));
-            for (std::size_t size : {p.normals.size(), p.tangents.size(), p.texcoords[0].size(), p.texcoords[1].size(), p.colours.size()})
+            for (std::size_t size :
+                 {p.normals.size(), p.tangents.size(), p.texcoords[0].size(), p.texcoords[1].size(), p.colours.size()})
                 ASSERT_TRUE(size == 0 || size == count);
             for (const glm::vec3& n : p.normals) ASSERT_NEAR(glm::length(n), 1.0f, 1.0e-3f);
         }
     for (const Material& m : scene.materials)
-        for (const TextureUse* use : {&m.baseColourTexture, &m.metallicRoughnessTexture, &m.normalTexture, &m.emissiveTexture})
+        for (const TextureUse* use :
+             {&m.baseColourTexture, &m.metallicRoughnessTexture, &m.normalTexture, &m.emissiveTexture})
             ASSERT_TRUE(use->image == kNone || use->image < scene.images.size());
     for (const Image& image : scene.images) ASSERT_EQ(image.rgba8.size(), std::size_t(image.width) * image.height * 4);
     for (const SceneLight& light : scene.lights) ASSERT_NEAR(glm::length(light.direction), 1.0f, 1.0e-3f);

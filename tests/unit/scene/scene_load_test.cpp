@@ -19,8 +19,9 @@ Scene loaded(const std::string& text) {
 // A buffer object and accessors of one's own around one mesh. `accessors` and `views` are JSON arrays.
 std::string custom(const std::vector<std::uint8_t>& bytes, const std::string& primitive, const std::string& accessors,
                    const std::string& views, const std::string& more = "", const std::string& node = R"({"mesh":0})") {
-    return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[)" + node + R"(],"meshes":[{"primitives":[)" + primitive +
-           R"(]}],"accessors":)" + accessors + R"(,"bufferViews":)" + views + R"(,"buffers":[)" + dataBuffer(bytes) + "]" + more + "}";
+    return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[)" + node +
+           R"(],"meshes":[{"primitives":[)" + primitive + R"(]}],"accessors":)" + accessors + R"(,"bufferViews":)" +
+           views + R"(,"buffers":[)" + dataBuffer(bytes) + "]" + more + "}";
 }
 
 const char* const kImage =
@@ -60,7 +61,8 @@ TEST(SceneLoad, StripsFansAndNoIndices) {
     const std::string accessors = R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"}])";
     const std::string views = R"([{"buffer":0,"byteLength":48}])";
     const auto indices = [&](const char* mode) {
-        const Scene scene = loaded(custom(bytes, std::string(R"({"attributes":{"POSITION":0},"mode":)") + mode + "}", accessors, views));
+        const Scene scene = loaded(
+            custom(bytes, std::string(R"({"attributes":{"POSITION":0},"mode":)") + mode + "}", accessors, views));
         return scene.meshes.at(0).primitives.at(0).indices;
     };
     EXPECT_EQ(indices("5"), (std::vector<std::uint32_t>{0, 1, 2, 1, 3, 2}));
@@ -69,18 +71,19 @@ TEST(SceneLoad, StripsFansAndNoIndices) {
 }
 
 TEST(SceneLoad, QuantisedStridedAndSparse) {
-    std::vector<std::uint8_t> bytes;  // i16 normalised positions, 8 bytes apart; u8 indices; sparse override of vertex 2
+    std::vector<std::uint8_t>
+        bytes;  // i16 normalised positions, 8 bytes apart; u8 indices; sparse override of vertex 2
     append<std::int16_t>(bytes, {0, 0, 0, 0, 32767, 0, 0, 0, 0, 0, 0, 0});
     append<std::uint8_t>(bytes, {2, 0, 1, 2});  // index list 2,0,1 then the sparse index 2
     append<std::int16_t>(bytes, {0, -32767, 0, 0});
-    const Scene scene = loaded(custom(
-        bytes, R"({"attributes":{"POSITION":0},"indices":1})",
-        R"([{"bufferView":0,"componentType":5122,"normalized":true,"count":3,"type":"VEC3","sparse":{"count":1,)"
-        R"("indices":{"bufferView":1,"byteOffset":3,"componentType":5121},"values":{"bufferView":2}}},)"
-        R"({"bufferView":1,"componentType":5121,"count":3,"type":"SCALAR"}])",
-        R"([{"buffer":0,"byteLength":24,"byteStride":8},{"buffer":0,"byteOffset":24,"byteLength":4},)"
-        R"({"buffer":0,"byteOffset":28,"byteLength":8}])",
-        R"(,"extensionsUsed":["KHR_mesh_quantization"],"extensionsRequired":["KHR_mesh_quantization"])"));
+    const Scene scene = loaded(
+        custom(bytes, R"({"attributes":{"POSITION":0},"indices":1})",
+               R"([{"bufferView":0,"componentType":5122,"normalized":true,"count":3,"type":"VEC3","sparse":{"count":1,)"
+               R"("indices":{"bufferView":1,"byteOffset":3,"componentType":5121},"values":{"bufferView":2}}},)"
+               R"({"bufferView":1,"componentType":5121,"count":3,"type":"SCALAR"}])",
+               R"([{"buffer":0,"byteLength":24,"byteStride":8},{"buffer":0,"byteOffset":24,"byteLength":4},)"
+               R"({"buffer":0,"byteOffset":28,"byteLength":8}])",
+               R"(,"extensionsUsed":["KHR_mesh_quantization"],"extensionsRequired":["KHR_mesh_quantization"])"));
     const Primitive& p = scene.meshes.at(0).primitives.at(0);
     EXPECT_EQ(p.positions, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}}));
     EXPECT_EQ(p.indices, (std::vector<std::uint32_t>{2, 0, 1}));
@@ -90,10 +93,11 @@ TEST(SceneLoad, UnusedVerticesAreDropped) {
     std::vector<std::uint8_t> bytes;
     append<float>(bytes, {9, 9, 9, 0, 0, 0, 1, 0, 0, 0, 1, 0});
     append<std::uint32_t>(bytes, {3, 1, 2});
-    const Scene scene = loaded(custom(bytes, R"({"attributes":{"POSITION":0},"indices":1})",
-                                      R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
-                                      R"({"bufferView":0,"byteOffset":48,"componentType":5125,"count":3,"type":"SCALAR"}])",
-                                      R"([{"buffer":0,"byteLength":60}])"));
+    const Scene scene =
+        loaded(custom(bytes, R"({"attributes":{"POSITION":0},"indices":1})",
+                      R"([{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
+                      R"({"bufferView":0,"byteOffset":48,"componentType":5125,"count":3,"type":"SCALAR"}])",
+                      R"([{"buffer":0,"byteLength":60}])"));
     EXPECT_EQ(scene.meshes.at(0).primitives.at(0).positions.size(), 3u);
     EXPECT_EQ(scene.meshes.at(0).primitives.at(0).indices, (std::vector<std::uint32_t>{2, 0, 1}));
 }
@@ -136,7 +140,9 @@ TEST(SceneLoad, MaterialTexturesAndTransform) {
     const Image& mirrored = scene.images[m.baseColourTexture.image];
     ASSERT_EQ(mirrored.width, 4u);
     const std::vector<std::uint8_t> red{255, 0, 0, 255}, blue{0, 0, 255, 255};
-    const auto texel = [&](std::size_t x) { return std::vector<std::uint8_t>(&mirrored.rgba8[4 * x], &mirrored.rgba8[4 * x] + 4); };
+    const auto texel = [&](std::size_t x) {
+        return std::vector<std::uint8_t>(&mirrored.rgba8[4 * x], &mirrored.rgba8[4 * x] + 4);
+    };
     EXPECT_EQ(texel(0), red);
     EXPECT_EQ(texel(1), blue);
     EXPECT_EQ(texel(2), blue);
@@ -167,7 +173,8 @@ TEST(SceneLoad, SkinAtItsStoredPose) {
         R"([{"buffer":0,"byteLength":96}])", R"(,"skins":[{"joints":[1,2]}])",
         R"({"mesh":0,"skin":0,"translation":[100,0,0]},{"translation":[0,0,1]},{"translation":[0,0,3]})"));
     const Primitive& p = scene.meshes.at(0).primitives.at(0);
-    EXPECT_EQ(p.positions, (std::vector<glm::vec3>{{0, 0, 1}, {1, 0, 3}, {0, 1, 2}}));  // the node's own transform does not count
+    EXPECT_EQ(p.positions,
+              (std::vector<glm::vec3>{{0, 0, 1}, {1, 0, 3}, {0, 1, 2}}));  // the node's own transform does not count
     EXPECT_EQ(scene.instances.at(0).worldFromObject, glm::mat4(1.0f));
 }
 
@@ -175,7 +182,8 @@ TEST(SceneLoad, CamerasPerspectiveAndOrthographic) {
     const Scene scene = loaded(triangleGltf(
         R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.7,"znear":0.1}},)"
         R"({"type":"orthographic","orthographic":{"xmag":2,"ymag":3,"znear":0,"zfar":50}}])",
-        "", R"([{"mesh":0,"children":[1,2]},{"name":"eye","camera":0,"translation":[0,0,9],"scale":[2,2,2]},{"camera":1}])"));
+        "",
+        R"([{"mesh":0,"children":[1,2]},{"name":"eye","camera":0,"translation":[0,0,9],"scale":[2,2,2]},{"camera":1}])"));
     ASSERT_EQ(scene.cameras.size(), 2u);
     EXPECT_EQ(scene.cameras[0].name, "eye");
     EXPECT_EQ(scene.cameras[0].worldFromCamera[0], glm::vec4(1, 0, 0, 0));  // the scale is gone

@@ -47,7 +47,8 @@ TEST(SceneRefuse, Containers) {
     expectRefused("[]", "root");
     expectRefused(R"({"asset":{"version":"1.0"}})", "only 2.0");
     expectRefused(std::string(100000, '['), "levels deep");
-    expectRefused(R"({"asset":{"version":"2.0"},"extras":)" + std::string(5000, '[') + std::string(5000, ']') + "}", "levels deep");
+    expectRefused(R"({"asset":{"version":"2.0"},"extras":)" + std::string(5000, '[') + std::string(5000, ']') + "}",
+                  "levels deep");
     expectRefused(R"({"asset":{"version":"2.0"}})", "the scene is empty");
     expectRefused(R"({"asset":{"version":"2.0"},"nodes":7})", "not an array");
 }
@@ -77,9 +78,13 @@ TEST(SceneRefuse, Vertices) {
 TEST(SceneRefuse, Accessors) {
     const std::string good = triangleGltf();
     for (const char* count : {"4", "4000000000", "18446744073709551615"})
-        expectRefused(replaced(good, R"("count":3,"type":"VEC3")", std::string(R"("count":)") + count + R"(,"type":"VEC3")"), "wants");
+        expectRefused(
+            replaced(good, R"("count":3,"type":"VEC3")", std::string(R"("count":)") + count + R"(,"type":"VEC3")"),
+            "wants");
     expectRefused(replaced(good, R"("count":3,"type":"VEC3")", R"("count":0,"type":"VEC3")"), "without elements");
-    expectRefused(replaced(good, R"("componentType":5126)", R"("componentType":5126,"byteOffset":18446744073709551614)"), "wants");
+    expectRefused(
+        replaced(good, R"("componentType":5126)", R"("componentType":5126,"byteOffset":18446744073709551614)"),
+        "wants");
     expectRefused(replaced(good, R"("componentType":5126)", R"("componentType":5130)"), "");
     expectRefused(replaced(good, R"("componentType":5123)", R"("componentType":5126)"), "");
     expectRefused(replaced(good, R"("bufferView":0)", R"("bufferView":9)"), "bufferView 9");
@@ -90,18 +95,21 @@ TEST(SceneRefuse, Accessors) {
     expectRefused(replaced(good, R"({"buffer":0,"byteLength":36})", R"({"buffer":3,"byteLength":36})"), "buffer 3");
     expectRefused(replaced(good, R"("byteLength":44)", R"("byteLength":45)"), "truncated");
     expectRefused(replaced(good, "base64,", "base64,!!"), "malformed");
-    const std::string sparse = R"("count":3,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":1,"byteOffset":4,)"
-                               R"("componentType":5123},"values":{"bufferView":0}})";
+    const std::string sparse =
+        R"("count":3,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":1,"byteOffset":4,)"
+        R"("componentType":5123},"values":{"bufferView":0}})";
     Scene scene;
     EXPECT_TRUE(loadText(replaced(good, R"("count":3,"type":"VEC3")", sparse), scene).ok());
     const std::string bad = replaced(good, R"("count":3,"type":"VEC3")", sparse);
     expectRefused(replaced(bad, R"("sparse":{"count":1)", R"("sparse":{"count":4)"), "sparse");
     expectRefused(replaced(bad, R"("byteOffset":4)", R"("byteOffset":-4)"), "negative");
     expectRefused(replaced(bad, R"("values":{"bufferView":0})", R"("values":{"bufferView":77})"), "bufferView 77");
-    expectRefused(R"({"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"componentType":5126,)"
-                  R"("count":4000000000,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":0,"componentType":5123},)"
-                  R"("values":{"bufferView":0}}}],"bufferViews":[{"buffer":0,"byteLength":44}],"buffers":[)" + dataBuffer(triangleBytes()) + "]}",
-                  "without a bufferView");
+    expectRefused(
+        R"({"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"componentType":5126,)"
+        R"("count":4000000000,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":0,"componentType":5123},)"
+        R"("values":{"bufferView":0}}}],"bufferViews":[{"buffer":0,"byteLength":44}],"buffers":[)" +
+            dataBuffer(triangleBytes()) + "]}",
+        "without a bufferView");
 }
 
 TEST(SceneRefuse, Indices) {
@@ -111,7 +119,9 @@ TEST(SceneRefuse, Indices) {
     expectRefused(replaced(triangleGltf(), R"("indices":1)", R"("indices":8)"), "");
     expectRefused(triangleGltf("", R"(,"material":4)"), "material 4");
     expectRefused(triangleGltf("", R"(,"mode":9)"), "mode 9");
-    expectRefused(triangleGltf(R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":3}}}])", R"(,"material":0)"), "texture 3");
+    expectRefused(
+        triangleGltf(R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":3}}}])", R"(,"material":0)"),
+        "texture 3");
 }
 
 TEST(SceneRefuse, Nodes) {
@@ -136,21 +146,32 @@ TEST(SceneRefuse, Nodes) {
 TEST(SceneRefuse, Extensions) {
     expectRefused(triangleGltf(R"(,"extensionsRequired":["EXT_meshopt_compression"])"), "EXT_meshopt_compression");
     expectNoted(triangleGltf(R"(,"extensionsUsed":["VENDOR_whatever"])"), "VENDOR_whatever");
-    expectRefused(triangleGltf("", R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}})"), "Draco");
+    expectRefused(
+        triangleGltf("",
+                     R"(,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}})"),
+        "Draco");
     expectRefused(triangleGltf("", R"(,"extensions":{"KHR_draco_mesh_compression":{}})"), "bufferView -1");
 }
 
 TEST(SceneRefuse, WhatIsNotDrawnIsNoted) {
     expectNoted(triangleGltf(R"(,"images":[{"uri":"missing.png"}],"textures":[{"source":0}],)"
-                             R"("materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])", R"(,"material":0)"), "missing.png");
+                             R"("materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])",
+                             R"(,"material":0)"),
+                "missing.png");
     expectNoted(triangleGltf(R"(,"images":[{"uri":"https://example.org/a.png"}],"textures":[{"source":0}],)"
-                             R"("materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])", R"(,"material":0)"), "nothing is fetched");
+                             R"("materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])",
+                             R"(,"material":0)"),
+                "nothing is fetched");
     expectNoted(triangleGltf("", "", R"([{"mesh":0,"camera":3}])"), "camera 3");
-    expectNoted(replaced(triangleGltf(), R"({"attributes":)", R"({"attributes":{"POSITION":0},"mode":0},{"attributes":)"), "points");
+    expectNoted(
+        replaced(triangleGltf(), R"({"attributes":)", R"({"attributes":{"POSITION":0},"mode":0},{"attributes":)"),
+        "points");
     expectNoted(triangleGltf("", "", R"([{"mesh":0,"children":[1]},{"mesh":0,"scale":[0,0,0]}])"), "scale of zero");
-    expectNoted(replaced(triangleGltf(), R"("POSITION":0)", R"("POSITION":0,"NORMAL":0)"), "normals without a direction");
+    expectNoted(replaced(triangleGltf(), R"("POSITION":0)", R"("POSITION":0,"NORMAL":0)"),
+                "normals without a direction");
     Scene scene;  // a broken buffer that nothing drawn refers to
-    EXPECT_TRUE(loadText(replaced(triangleGltf(), R"("}]})", R"("},{"byteLength":99,"uri":"gone.bin"}]})"), scene).ok());
+    EXPECT_TRUE(
+        loadText(replaced(triangleGltf(), R"("}]})", R"("},{"byteLength":99,"uri":"gone.bin"}]})"), scene).ok());
 }
 
 // A seeded storm of damaged files: whatever loads must be sound.

@@ -30,11 +30,13 @@ Scene room(float halfSize, const std::vector<float>& intensities) {
 }  // namespace
 
 TEST(SceneRules, RangeDoesNotDependOnTheUnits) {
-    Scene metres = room(10.0f, {1, 2, 30, 4, 5, 6, 7, 8}), inches = room(10.0f / 0.0254f, {100, 200, 3000, 400, 500, 600, 700, 800});
+    Scene metres = room(10.0f, {1, 2, 30, 4, 5, 6, 7, 8}),
+          inches = room(10.0f / 0.0254f, {100, 200, 3000, 400, 500, 600, 700, 800});
     completeLights(metres);
     completeLights(inches);
     for (std::size_t i = 0; i < metres.lights.size(); ++i)
-        EXPECT_NEAR(inches.lights[i].rangeMetres * 0.0254f, metres.lights[i].rangeMetres, 1.0e-3f * metres.lights[i].rangeMetres);
+        EXPECT_NEAR(inches.lights[i].rangeMetres * 0.0254f, metres.lights[i].rangeMetres,
+                    1.0e-3f * metres.lights[i].rangeMetres);
     EXPECT_LT(metres.lights[0].rangeMetres, metres.lights[3].rangeMetres);
 }
 
@@ -85,8 +87,9 @@ TEST(SceneRules, CamerasFromText) {
     EXPECT_TRUE(parseCamera("door", scene, camera).ok());
     EXPECT_EQ(camera.nearMetres, 0.7f);
     EXPECT_TRUE(parseCamera("#0", scene, camera).ok());
-    for (const char* bad : {"", "#1", "#", "#x", "window", "1,2,3", "1,2:3,4,5", "1,2,3:1,2,3", "1,2,3:4,5,6:0", "1,2,3:4,5,6:180",
-                            "1,2,3:4,5,6:60:1", "1,2,nan:4,5,6", "1,2,3,4:5,6,7", "1,2,3x:4,5,6", "1,,3:4,5,6"}) {
+    for (const char* bad :
+         {"", "#1", "#", "#x", "window", "1,2,3", "1,2:3,4,5", "1,2,3:1,2,3", "1,2,3:4,5,6:0", "1,2,3:4,5,6:180",
+          "1,2,3:4,5,6:60:1", "1,2,nan:4,5,6", "1,2,3,4:5,6,7", "1,2,3x:4,5,6", "1,,3:4,5,6"}) {
         SceneCamera untouched;
         untouched.nearMetres = 123.0f;
         EXPECT_FALSE(parseCamera(bad, scene, untouched).ok()) << bad;

@@ -19,13 +19,18 @@ constexpr std::array kEntries = {
     Entry{"empty-plane", "A plane and one spot.", [](const BuiltinOptions&) { return makeEmptyPlane(); }},
     Entry{"sphere-on-plane", "A sphere of 1 m over a plane, one point light: penumbrae with closed forms.",
           [](const BuiltinOptions&) { return makeSphereOnPlane(); }},
-    Entry{"boxes", "A closed room with two boxes and three point lights.", [](const BuiltinOptions&) { return makeBoxes(); }},
+    Entry{"boxes", "A closed room with two boxes and three point lights.",
+          [](const BuiltinOptions&) { return makeBoxes(); }},
     Entry{"columns", "Rows of thin columns; lightCount (12) lights at places from the seed.",
           [](const BuiltinOptions& options) { return makeColumns(options); }},
-    Entry{"cloth", "Double-sided sheets without thickness between two lights.", [](const BuiltinOptions&) { return makeCloth(); }},
-    Entry{"masked", "Panels with alpha-tested holes, a point and a spot behind them.", [](const BuiltinOptions&) { return makeMasked(); }},
-    Entry{"single-triangle", "One double-sided triangle and one point light.", [](const BuiltinOptions&) { return makeSingleTriangle(); }},
-    Entry{"lights-only", "Three lights and nothing to shine on.", [](const BuiltinOptions&) { return makeLightsOnly(); }},
+    Entry{"cloth", "Double-sided sheets without thickness between two lights.",
+          [](const BuiltinOptions&) { return makeCloth(); }},
+    Entry{"masked", "Panels with alpha-tested holes, a point and a spot behind them.",
+          [](const BuiltinOptions&) { return makeMasked(); }},
+    Entry{"single-triangle", "One double-sided triangle and one point light.",
+          [](const BuiltinOptions&) { return makeSingleTriangle(); }},
+    Entry{"lights-only", "Three lights and nothing to shine on.",
+          [](const BuiltinOptions&) { return makeLightsOnly(); }},
 };
 
 }  // namespace

@@ -27,7 +27,8 @@ std::uint32_t textured(SceneBuilder& builder, const char* name, PaintedTexture p
     return builder.material(std::move(material));
 }
 
-std::uint32_t plain(SceneBuilder& builder, const char* name, const glm::vec3& colour, float roughness, float metallic = 0.0f) {
+std::uint32_t plain(SceneBuilder& builder, const char* name, const glm::vec3& colour, float roughness,
+                    float metallic = 0.0f) {
     Material material;
     material.name = name;
     material.baseColour = glm::vec4(colour, 1.0f);
@@ -47,16 +48,19 @@ void makeMaterials(Parts& parts) {
     m.wood = textured(b, "wood", paintPlanks(256, {0.58f, 0.41f, 0.27f}));
     m.darkWood = textured(b, "dark wood", paintPlanks(256, {0.36f, 0.25f, 0.18f}));
     m.clay = textured(b, "clay", paintClay(256, {0.68f, 0.36f, 0.24f}));
+    m.tiles = textured(b, "roof tiles", paintClay(256, {0.60f, 0.33f, 0.23f}));
+    b.scene.materials[m.tiles].doubleSided = true;  // open below
     m.iron = plain(b, "iron", {0.05f, 0.05f, 0.055f}, 0.45f, 0.6f);
     m.rope = plain(b, "rope", {0.22f, 0.16f, 0.10f}, 0.95f);
     m.bronze = plain(b, "bronze", {0.30f, 0.36f, 0.27f}, 0.4f, 0.5f);
     m.water = plain(b, "water", {0.015f, 0.05f, 0.06f}, 0.08f);
+    m.spray = plain(b, "spray", {0.55f, 0.66f, 0.70f}, 0.15f);
     m.leaf = plain(b, "leaf", {0.09f, 0.17f, 0.045f}, 0.6f);
     b.scene.materials[m.leaf].doubleSided = b.scene.materials[m.leaf].subsurface = true;
     m.glow = plain(b, "flame", {0.0f, 0.0f, 0.0f}, 1.0f);
-    b.scene.materials[m.glow].emissive = glm::vec3(1.0f, 0.56f, 0.2f) * 60.0f;
+    b.scene.materials[m.glow].emissive = glm::vec3(1.0f, 0.56f, 0.2f) * 12.0f;
     m.coolGlow = plain(b, "cool lamp", {0.0f, 0.0f, 0.0f}, 1.0f);
-    b.scene.materials[m.coolGlow].emissive = glm::vec3(0.35f, 0.65f, 1.0f) * 40.0f;
+    b.scene.materials[m.coolGlow].emissive = glm::vec3(0.35f, 0.65f, 1.0f) * 10.0f;
     const glm::vec3 cream(0.86f, 0.80f, 0.68f);
     m.cloth = {textured(b, "cloth red", paintStripes(256, {0.66f, 0.10f, 0.09f}, cream)),
                textured(b, "cloth blue", paintStripes(256, {0.10f, 0.22f, 0.50f}, cream)),
@@ -82,12 +86,12 @@ Scene makeCourtyard() {
     addFurniture(parts);
     addLights(parts);
     SceneBuilder& b = parts.builder;
-    b.camera("overview", {-11.6f, 5.0f, 7.2f}, {1.6f, 1.9f, -2.0f}, 0.93f);
+    b.camera("overview", {-11.7f, 5.3f, 5.6f}, {1.2f, 1.75f, -1.5f}, 0.93f);
     b.camera("arcade", {-12.2f, 1.75f, -10.7f}, {2.0f, 1.55f, -9.3f}, 0.95f);
     b.camera("fountain", {4.6f, 1.45f, 4.4f}, {-0.6f, 1.75f, -1.2f}, 0.9f);
     b.scene.skyColour = {0.030f, 0.048f, 0.105f};
     b.scene.groundColour = {0.022f, 0.020f, 0.022f};
-    b.scene.exposureEv100 = 1.0f;
+    b.scene.exposureEv100 = 0.1f;
     return std::move(b.scene);
 }
 

@@ -10,20 +10,21 @@
 
 namespace gnomon::renderer::courtyard {
 
-inline constexpr float kBay = 2.6f;           // metres between columns of the lower arcade; half of it above
+inline constexpr float kBay = 2.6f;  // metres between columns of the lower arcade; half of it above
 inline constexpr float kHalfX = 13.0f, kHalfZ = 9.1f;
 inline constexpr float kDepth = 3.0f;         // of the arcades
 inline constexpr float kArcadeFloor = 0.15f;  // one step above the court
 inline constexpr float kSpringing = 2.45f;    // of the lower arches
 inline constexpr float kGallery = 4.4f;       // floor of the upper storey
 inline constexpr float kUpperSpringing = 6.3f;
-inline constexpr float kEaves = 7.3f;         // underside of the roof deck at its front edge, z = kEavesFront
+inline constexpr float kEaves = 7.3f;  // underside of the roof deck at its front edge, z = kEavesFront
 inline constexpr float kEavesFront = 0.45f;
-inline constexpr float kRoofSlope = 0.4f;     // rise per metre away from the court
-inline constexpr float kDeck = 0.1f;          // thickness of the roof deck
+inline constexpr float kRoofSlope = 0.4f;  // rise per metre away from the court
+inline constexpr float kDeck = 0.1f;       // thickness of the roof deck
 
 struct Materials {
-    std::uint32_t stone, trim, plaster, cobbles, flags, wood, darkWood, clay, iron, rope, glow, coolGlow, water, leaf, bronze;
+    std::uint32_t stone, trim, plaster, cobbles, flags, wood, darkWood, clay, tiles, iron, rope, glow, coolGlow, water,
+        spray, leaf, bronze;
     std::array<std::uint32_t, 4> cloth;
 };
 

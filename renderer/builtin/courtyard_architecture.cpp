@@ -12,8 +12,9 @@ namespace gnomon::renderer::courtyard {
 namespace {
 
 constexpr float kPierHalf = 0.3f;
-constexpr int kTilesPerStrip = 9;
-constexpr float kTileWidth = 0.26f, kTileLength = 0.44f;
+constexpr int kTilesPerStrip = 7;
+constexpr int kTileSides = 4;
+constexpr float kTileWidth = 0.325f, kTileLength = 0.57f;
 
 glm::mat4 on(const Side& side, const glm::vec3& position, float turn = 0.0f) {
     return side.worldFromSide * placed(position, turn);
@@ -44,12 +45,13 @@ void addFloors(Parts& parts) {
 
 std::uint32_t lowerColumnMesh(Parts& parts) {
     ShapeBuilder column(parts.materials.trim);
-    column.box({-0.29f, kArcadeFloor - 0.02f, -0.29f}, {0.29f, 0.33f, 0.29f}, ShapeBuilder::kAll & ~ShapeBuilder::kBottom);
-    const glm::vec2 profile[] = {{0.28f, 0.33f},  {0.285f, 0.37f}, {0.265f, 0.41f}, {0.225f, 0.43f}, {0.235f, 0.47f},
-                                 {0.225f, 0.51f}, {0.2f, 0.53f},   {0.205f, 1.2f},  {0.175f, 2.0f},  {0.175f, 2.02f},
-                                 {0.205f, 2.035f}, {0.205f, 2.065f}, {0.175f, 2.08f}, {0.18f, 2.14f}, {0.21f, 2.22f},
-                                 {0.27f, 2.29f},  {0.29f, 2.32f}};
-    column.lathe(profile, 16);
+    column.box({-0.29f, kArcadeFloor - 0.02f, -0.29f}, {0.29f, 0.33f, 0.29f},
+               ShapeBuilder::kAll & ~ShapeBuilder::kBottom);
+    const glm::vec2 profile[] = {{0.28f, 0.33f},   {0.285f, 0.37f},  {0.265f, 0.41f}, {0.225f, 0.43f}, {0.235f, 0.47f},
+                                 {0.225f, 0.51f},  {0.2f, 0.53f},    {0.205f, 1.2f},  {0.175f, 2.0f},  {0.175f, 2.02f},
+                                 {0.205f, 2.035f}, {0.205f, 2.065f}, {0.175f, 2.08f}, {0.18f, 2.14f},  {0.21f, 2.22f},
+                                 {0.27f, 2.29f},   {0.29f, 2.32f}};
+    column.lathe(profile, 14);
     column.box({-0.32f, 2.31f, -0.32f}, {0.32f, kSpringing + 0.015f, 0.32f});
     std::vector<Primitive> primitives;
     primitives.push_back(column.take());
@@ -61,26 +63,25 @@ std::uint32_t upperColumnMesh(Parts& parts) {
     const unsigned sides = ShapeBuilder::kAll & ~ShapeBuilder::kBottom;
     column.box({-0.15f, kGallery - 0.02f, -0.15f}, {0.15f, kGallery + 0.14f, 0.15f}, sides);
     const float y = kGallery;
-    const glm::vec2 profile[] = {{0.14f, y + 0.14f},  {0.145f, y + 0.17f}, {0.11f, y + 0.20f},  {0.09f, y + 0.22f},
+    const glm::vec2 profile[] = {{0.14f, y + 0.14f},  {0.145f, y + 0.17f},  {0.11f, y + 0.20f},  {0.09f, y + 0.22f},
                                  {0.085f, y + 1.62f}, {0.105f, y + 1.635f}, {0.105f, y + 1.66f}, {0.085f, y + 1.675f},
                                  {0.10f, y + 1.75f},  {0.15f, y + 1.82f}};
-    column.lathe(profile, 12);
+    column.lathe(profile, 10);
     column.box({-0.17f, y + 1.81f, -0.17f}, {0.17f, kUpperSpringing + 0.01f, 0.17f});
     std::vector<Primitive> primitives;
     primitives.push_back(column.take());
     return parts.builder.mesh("gallery column", std::move(primitives));
 }
 
-// Balusters and rails of half a bay: 2.6 cm thick bars with a knop.
+// Balusters and rails of half a bay: spindles, 3.6 cm thick in the middle.
 std::uint32_t railingMesh(Parts& parts) {
     ShapeBuilder railing(parts.materials.iron);
     constexpr int kBalusters = 8;
-    const glm::vec2 profile[] = {{0.013f, 0.1f},  {0.013f, 0.42f}, {0.024f, 0.46f},
-                                 {0.013f, 0.50f}, {0.013f, 0.91f}};
+    const glm::vec2 profile[] = {{0.011f, 0.1f}, {0.018f, 0.46f}, {0.011f, 0.91f}};
     for (int i = 0; i < kBalusters; ++i) {
         const float x = -0.5f * kBay * 0.5f + 0.5f * kBay * (static_cast<float>(i) + 0.5f) / kBalusters;
         railing.setTransform(placed({x, kGallery, 0.0f}));
-        railing.lathe(profile, 6);
+        railing.lathe(profile, 5);
     }
     railing.setTransform(placed({0, kGallery, 0}));
     railing.box({-0.65f, 0.90f, -0.035f}, {0.65f, 0.95f, 0.035f});
@@ -93,7 +94,7 @@ std::uint32_t railingMesh(Parts& parts) {
 void addArcades(Parts& parts) {
     ShapeBuilder lower(parts.materials.stone), upper(parts.materials.trim);
     lower.arch({kBay, kSpringing, 4.25f, 1.05f, 0.5f, 18, 0.16f, 0.05f});
-    upper.arch({0.5f * kBay, kUpperSpringing, 7.48f, 0.51f, 0.26f, 12, 0.09f, 0.03f});
+    upper.arch({0.5f * kBay, kUpperSpringing, 7.48f, 0.51f, 0.26f, 10, 0.09f, 0.03f});
     const std::uint32_t lowerArch = parts.builder.mesh("arch", {lower.take()});
     const std::uint32_t upperArch = parts.builder.mesh("gallery arch", {upper.take()});
     const std::uint32_t lowerColumn = lowerColumnMesh(parts), upperColumn = upperColumnMesh(parts);
@@ -152,10 +153,10 @@ void addTile(ShapeBuilder& strip, const glm::mat4& stripFromTile) {
         const float angle = 3.14159265359f * (1.0f - u), radius = kRadius * (0.86f + 0.14f * v);
         return glm::vec3(radius * std::cos(angle), 0.6f * radius * std::sin(angle), kTileLength * v);
     };
-    strip.sheet([&](float u, float v) { return outside(u, v); }, 5, 1, 0.35f, kTileLength);
+    strip.sheet([&](float u, float v) { return outside(u, v); }, kTileSides, 1, 0.42f, kTileLength);
     // The lower end: a face, so that the tile looks solid.
-    glm::vec3 rim[6];
-    for (int i = 0; i < 6; ++i) rim[i] = outside(1.0f - static_cast<float>(i) / 5.0f, 1.0f);
+    glm::vec3 rim[kTileSides + 1];
+    for (int i = 0; i <= kTileSides; ++i) rim[i] = outside(1.0f - static_cast<float>(i) / kTileSides, 1.0f);
     strip.polygon(rim);
 }
 
@@ -166,10 +167,10 @@ void addRoofs(Parts& parts) {
         deck.mitred({side.halfLength, kEavesFront, back, kEaves, kEaves + rise, kEaves + kDeck, kEaves + kDeck + rise});
         parts.builder.place("roof deck", deck, side.worldFromSide);
     }
-    const float angle = std::atan(kRoofSlope), spacing = 0.405f;  // metres along the slope between courses
+    const float angle = std::atan(kRoofSlope), spacing = 0.53f;  // metres along the slope between courses
     std::array<std::uint32_t, kTilesPerStrip + 1> strips{};
     for (int count = 1; count <= kTilesPerStrip; ++count) {
-        ShapeBuilder strip(parts.materials.clay);
+        ShapeBuilder strip(parts.materials.tiles);
         for (int i = 0; i < count; ++i) {
             // Each course lies 2 cm above the one below it, tilted so that its upper end dives under the next.
             const glm::mat4 course = glm::rotate(glm::mat4(1.0f), angle, glm::vec3(1, 0, 0));
@@ -183,7 +184,8 @@ void addRoofs(Parts& parts) {
         const int columns = static_cast<int>(2.0f * (side.halfLength + kDepth) / kTileWidth);
         for (int i = 0; i < columns; ++i) {
             const float x = kTileWidth * (static_cast<float>(i) + 0.5f - 0.5f * static_cast<float>(columns));
-            const float lowest = std::min(kEavesFront + 0.1f, side.halfLength - std::abs(x));  // the valley cuts the strip
+            const float lowest =
+                std::min(kEavesFront + 0.1f, side.halfLength - std::abs(x));  // the valley cuts the strip
             const float slope = (lowest - top) / std::cos(angle);
             const int count = std::min(kTilesPerStrip, static_cast<int>(slope / spacing + 0.35f));
             if (count > 0) parts.builder.place(strips[static_cast<std::size_t>(count)], on(side, {x, topHeight, top}));

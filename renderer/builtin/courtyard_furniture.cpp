@@ -10,17 +10,17 @@ namespace {
 
 void addFountain(Parts& parts) {
     ShapeBuilder steps(parts.materials.stone), basin(parts.materials.trim), water(parts.materials.water);
-    ShapeBuilder figure(parts.materials.bronze), jets(parts.materials.water);
+    ShapeBuilder figure(parts.materials.bronze), jets(parts.materials.spray);
     const glm::vec2 stepProfile[] = {{3.1f, -0.02f}, {3.1f, 0.16f}, {2.65f, 0.16f}, {2.65f, 0.32f}, {1.5f, 0.32f}};
     steps.lathe(stepProfile, 8, true);
-    const glm::vec2 basinProfile[] = {{2.28f, 0.30f}, {2.28f, 0.38f}, {2.15f, 0.44f}, {2.1f, 0.50f},  {2.1f, 0.80f},
-                                      {2.16f, 0.85f}, {2.25f, 0.88f}, {2.25f, 0.97f}, {1.82f, 0.97f}, {1.82f, 0.40f},
-                                      {0.2f, 0.40f}};
+    const glm::vec2 basinProfile[] = {{2.28f, 0.30f}, {2.28f, 0.38f}, {2.15f, 0.44f}, {2.1f, 0.50f},
+                                      {2.1f, 0.80f},  {2.16f, 0.85f}, {2.25f, 0.88f}, {2.25f, 0.97f},
+                                      {1.82f, 0.97f}, {1.82f, 0.40f}, {0.2f, 0.40f}};
     basin.lathe(basinProfile, 16, true);
-    const glm::vec2 bowl[] = {{0.46f, 0.38f}, {0.46f, 0.56f}, {0.36f, 0.62f}, {0.26f, 0.74f},  {0.22f, 1.0f},
-                              {0.28f, 1.2f},  {0.22f, 1.34f}, {0.28f, 1.42f}, {0.62f, 1.52f},  {0.9f, 1.68f},
-                              {1.0f, 1.86f},  {1.03f, 1.92f}, {0.97f, 1.94f}, {0.84f, 1.78f},  {0.5f, 1.70f},
-                              {0.1f, 1.69f}};
+    const glm::vec2 bowl[] = {{0.46f, 0.38f}, {0.46f, 0.56f}, {0.36f, 0.62f}, {0.26f, 0.74f},
+                              {0.22f, 1.0f},  {0.28f, 1.2f},  {0.22f, 1.34f}, {0.28f, 1.42f},
+                              {0.62f, 1.52f}, {0.9f, 1.68f},  {1.0f, 1.86f},  {1.03f, 1.92f},
+                              {0.97f, 1.94f}, {0.84f, 1.78f}, {0.5f, 1.70f},  {0.1f, 1.69f}};
     basin.lathe(bowl, 32);
     const glm::vec2 turnedFigure[] = {{0.24f, 1.66f}, {0.24f, 1.92f}, {0.17f, 1.98f}, {0.13f, 2.08f}, {0.17f, 2.25f},
                                       {0.21f, 2.42f}, {0.17f, 2.60f}, {0.12f, 2.72f}, {0.16f, 2.86f}, {0.2f, 2.98f},
@@ -46,8 +46,8 @@ void addFountain(Parts& parts) {
 }
 
 // A draped cloth over a frame of poles: rear edge high, front edge low with a scalloped valance.
-std::uint32_t awningMesh(Parts& parts, std::uint32_t cloth, float width, float depth, float rearHeight, float frontHeight,
-                         bool rearPoles) {
+std::uint32_t awningMesh(Parts& parts, std::uint32_t cloth, float width, float depth, float rearHeight,
+                         float frontHeight, bool rearPoles) {
     ShapeBuilder sheet(cloth), poles(parts.materials.darkWood);
     const auto roof = [=](float u, float v) {
         const float sag = 0.16f * std::sin(3.14159265f * v) * (1.0f + 0.35f * std::cos(6.2831853f * 2.0f * u));
@@ -87,21 +87,23 @@ std::uint32_t crateMesh(Parts& parts) {
     for (const float x : {-0.29f, 0.29f})
         for (const float z : {-0.29f, 0.29f}) slats.box({x - 0.04f, 0.0f, z - 0.04f}, {x + 0.04f, 0.6f, z + 0.04f});
     for (const float y : {0.0f, 0.525f})
-        for (const float z : {-0.305f, 0.305f}) slats.box({-0.26f, y + 0.003f, z - 0.02f}, {0.26f, y + 0.07f, z + 0.02f});
+        for (const float z : {-0.305f, 0.305f})
+            slats.box({-0.26f, y + 0.003f, z - 0.02f}, {0.26f, y + 0.07f, z + 0.02f});
     for (const float y : {0.0f, 0.525f})
-        for (const float x : {-0.305f, 0.305f}) slats.box({x - 0.02f, y + 0.004f, -0.26f}, {x + 0.02f, y + 0.071f, 0.26f});
+        for (const float x : {-0.305f, 0.305f})
+            slats.box({x - 0.02f, y + 0.004f, -0.26f}, {x + 0.02f, y + 0.071f, 0.26f});
     return parts.builder.mesh("crate", {crate.take(), slats.take()});
 }
 
 std::uint32_t barrelMesh(Parts& parts) {
     ShapeBuilder staves(parts.materials.wood), hoops(parts.materials.iron);
-    const glm::vec2 body[] = {{0.24f, 0.0f}, {0.29f, 0.2f}, {0.31f, 0.42f}, {0.29f, 0.64f},
+    const glm::vec2 body[] = {{0.24f, 0.0f},  {0.29f, 0.2f},  {0.31f, 0.42f}, {0.29f, 0.64f},
                               {0.24f, 0.84f}, {0.22f, 0.84f}, {0.22f, 0.80f}, {0.0f, 0.80f}};
-    staves.lathe(body, 18);
-    for (const auto& [y, r] : {std::pair{0.12f, 0.276f}, std::pair{0.28f, 0.306f}, std::pair{0.53f, 0.306f},
-                               std::pair{0.69f, 0.282f}}) {
+    staves.lathe(body, 12);
+    for (const auto& [y, r] :
+         {std::pair{0.1f, 0.272f}, std::pair{0.26f, 0.304f}, std::pair{0.54f, 0.304f}, std::pair{0.70f, 0.282f}}) {
         const glm::vec2 hoop[] = {{r - 0.03f, y}, {r, y}, {r, y + 0.04f}, {r - 0.03f, y + 0.04f}};
-        hoops.lathe(hoop, 18);
+        hoops.lathe(hoop, 12);
     }
     return parts.builder.mesh("barrel", {staves.take(), hoops.take()});
 }
@@ -124,11 +126,11 @@ std::uint32_t benchMesh(Parts& parts) {
 }
 
 void addPotBody(ShapeBuilder& pot, float radius, float height) {
-    const glm::vec2 profile[] = {{0.62f * radius, 0.0f},          {0.85f * radius, 0.4f * height},
-                                 {1.0f * radius, 0.85f * height}, {1.08f * radius, 0.87f * height},
-                                 {1.08f * radius, height},        {0.94f * radius, height},
+    const glm::vec2 profile[] = {{0.62f * radius, 0.0f},           {0.85f * radius, 0.4f * height},
+                                 {1.0f * radius, 0.85f * height},  {1.08f * radius, 0.87f * height},
+                                 {1.08f * radius, height},         {0.94f * radius, height},
                                  {0.92f * radius, 0.86f * height}, {0.0f, 0.86f * height}};
-    pot.lathe(profile, 18);
+    pot.lathe(profile, 14);
 }
 
 // A folded leaf of two triangles at `root`, pointing along `out`.
@@ -146,7 +148,7 @@ std::uint32_t treeMesh(Parts& parts) {
     addPotBody(pot, 0.36f, 0.62f);
     const glm::vec3 path[] = {{0, 0.5f, 0}, {0.03f, 0.9f, 0.02f}, {-0.02f, 1.3f, 0.0f}, {0.02f, 1.75f, 0.02f}};
     trunk.tube(path, 0.035f, 7);
-    for (int i = 0; i < 620; ++i) {
+    for (int i = 0; i < 520; ++i) {
         const glm::vec3 d(parts.random.between(-1, 1), parts.random.between(-1, 1), parts.random.between(-1, 1));
         const float reach = 0.35f + 0.65f * std::sqrt(parts.random.unit());
         const glm::vec3 out = glm::normalize(d + glm::vec3(0, 1e-3f, 0));
@@ -170,12 +172,13 @@ std::uint32_t plantMesh(Parts& parts) {
 // Ivy around a lower column, thinning out upwards.
 std::uint32_t ivyMesh(Parts& parts) {
     ShapeBuilder leaves(parts.materials.leaf);
-    for (int i = 0; i < 420; ++i) {
+    for (int i = 0; i < 380; ++i) {
         const float u = parts.random.unit(), y = 0.35f + 3.6f * u * u;
         const float angle = 1.57f + 3.2f * (parts.random.unit() - 0.5f) + 0.8f * std::sin(3.0f * y);
         const float radius = y < 2.2f ? 0.25f : 0.34f;
         const glm::vec3 out(std::cos(angle), -0.3f, std::sin(angle));
-        addLeaf(leaves, parts.random, glm::vec3(radius * out.x, y, radius * out.z), out, parts.random.between(0.09f, 0.16f));
+        addLeaf(leaves, parts.random, glm::vec3(radius * out.x, y, radius * out.z), out,
+                parts.random.between(0.09f, 0.16f));
     }
     return parts.builder.mesh("ivy", {leaves.take()});
 }
@@ -215,7 +218,11 @@ void addStalls(Parts& parts) {
     const std::uint32_t lean = awningMesh(parts, m.cloth[2], 2.3f, 1.9f, 3.3f, 2.55f, false);
     const std::uint32_t table = tableMesh(parts), crate = crateMesh(parts), barrel = barrelMesh(parts);
     const std::uint32_t plant = plantMesh(parts);
-    struct Stall { std::uint32_t awning; glm::vec3 at; float turn; };
+    struct Stall {
+        std::uint32_t awning;
+        glm::vec3 at;
+        float turn;
+    };
     for (const Stall& stall : {Stall{red, {5.6f, 0, -7.0f}, -0.15f}, Stall{blue, {-6.2f, 0, -7.2f}, 0.1f}}) {
         const glm::mat4 frame = placed(stall.at, stall.turn);
         b.place(stall.awning, frame);
@@ -230,21 +237,28 @@ void addStalls(Parts& parts) {
     // Two lean-to awnings before bays of the eastern and the southern arcade.
     b.place(lean, parts.sides[2].worldFromSide * placed({-2.6f * 1.0f, 0, 0.34f}));
     b.place(lean, parts.sides[1].worldFromSide * placed({3.9f, 0, 0.34f}));
-    const std::array<glm::vec4, 9> crates = {glm::vec4(10.9f, 0, -7.2f, 0.3f),  {11.5f, 0, -6.5f, 0.9f}, {11.15f, 0.6f, -6.9f, 0.5f},
-                                            {-11.2f, 0, -3.2f, 0.2f}, {-11.3f, 0, -2.4f, 1.2f}, {9.6f, 0, 6.9f, 0.1f},
-                                            {10.3f, 0, 7.3f, 0.7f},  {9.9f, 0.6f, 7.1f, 0.4f}, {-1.2f, 0, -7.6f, 0.5f}};
+    const std::array<glm::vec4, 9> crates = {
+        glm::vec4(10.9f, 0, -7.2f, 0.3f), {11.5f, 0, -6.5f, 0.9f},  {11.15f, 0.6f, -6.9f, 0.5f},
+        {-11.2f, 0, -3.2f, 0.2f},         {-11.3f, 0, -2.4f, 1.2f}, {9.6f, 0, 6.9f, 0.1f},
+        {10.3f, 0, 7.3f, 0.7f},           {9.9f, 0.6f, 7.1f, 0.4f}, {-1.2f, 0, -7.6f, 0.5f}};
     for (const glm::vec4& c : crates) b.place(crate, placed(glm::vec3(c), c.w));
-    for (const glm::vec3& p : {glm::vec3(10.0f, 0, -7.6f), {11.4f, 0, -5.6f}, {-11.5f, 0, -1.5f}, {-10.8f, 0, -4.0f},
-                               {11.3f, 0, 6.6f}, {-0.4f, 0, -7.8f}})
+    for (const glm::vec3& p : {glm::vec3(10.0f, 0, -7.6f),
+                               {11.4f, 0, -5.6f},
+                               {-11.5f, 0, -1.5f},
+                               {-10.8f, 0, -4.0f},
+                               {11.3f, 0, 6.6f},
+                               {-0.4f, 0, -7.8f}})
         b.place(barrel, placed(p, p.x));
 }
 
 void addBenchesAndPlants(Parts& parts) {
     SceneBuilder& b = parts.builder;
-    const std::uint32_t bench = benchMesh(parts), tree = treeMesh(parts), plant = plantMesh(parts), ivy = ivyMesh(parts);
+    const std::uint32_t bench = benchMesh(parts), tree = treeMesh(parts), plant = plantMesh(parts),
+                        ivy = ivyMesh(parts);
     for (const glm::vec3& p : {glm::vec3(4.6f, 0, 0.0f), {-4.6f, 0, 0.0f}, {0.0f, 0, 4.7f}, {0.0f, 0, -4.7f}})
         b.place(bench, placed(p, std::atan2(-p.x, -p.z)));
-    for (const glm::vec3& p : {glm::vec3(8.6f, 0, 4.4f), {-8.4f, 0, 4.6f}, {8.8f, 0, -3.2f}, {-8.6f, 0, -4.4f}, {3.4f, 0, 6.6f}})
+    for (const glm::vec3& p :
+         {glm::vec3(8.6f, 0, 4.4f), {-9.9f, 0, 7.2f}, {8.8f, 0, -3.2f}, {-8.6f, 0, -4.4f}, {3.4f, 0, 6.6f}})
         b.place(tree, placed(p, 1.3f * p.x));
     for (std::size_t s = 0; s < parts.sides.size(); ++s) {
         const Side& side = parts.sides[s];

@@ -15,7 +15,9 @@ struct Texel {
     float roughness;
 };
 
-std::uint8_t toByte(float v) { return static_cast<std::uint8_t>(std::clamp(v, 0.0f, 1.0f) * 255.0f + 0.5f); }
+std::uint8_t toByte(float v) {
+    return static_cast<std::uint8_t>(std::clamp(v, 0.0f, 1.0f) * 255.0f + 0.5f);
+}
 
 float smooth(float low, float high, float v) {
     const float t = std::clamp((v - low) / (high - low), 0.0f, 1.0f);
@@ -64,13 +66,16 @@ PaintedTexture paint(std::uint32_t size, float metres, const std::function<Texel
         }
     }
     const float texelsPerMetre = static_cast<float>(size) / metres;
-    const auto height = [&](std::uint32_t x, std::uint32_t y) { return heights[std::size_t(y % size) * size + x % size]; };
+    const auto height = [&](std::uint32_t x, std::uint32_t y) {
+        return heights[std::size_t(y % size) * size + x % size];
+    };
     for (std::uint32_t y = 0; y < size; ++y) {
         for (std::uint32_t x = 0; x < size; ++x) {
             const float dx = 0.5f * texelsPerMetre * (height(x + 1, y) - height(x + size - 1, y));
             const float dy = 0.5f * texelsPerMetre * (height(x, y + 1) - height(x, y + size - 1));  // downwards
             const glm::vec3 n = glm::normalize(glm::vec3(-dx, dy, 1.0f)) * 0.5f + 0.5f;
-            for (int c = 0; c < 3; ++c) painted.normal.rgba8[(std::size_t(y) * size + x) * 4 + std::size_t(c)] = toByte(n[c]);
+            for (int c = 0; c < 3; ++c)
+                painted.normal.rgba8[(std::size_t(y) * size + x) * 4 + std::size_t(c)] = toByte(n[c]);
         }
     }
     return painted;
@@ -88,7 +93,8 @@ CellHit voronoi(float u, float v, int cells, std::uint32_t seed) {
     float nearest = 1e9f, second = 1e9f, random = 0.0f;
     for (int j = row - 1; j <= row + 1; ++j) {
         for (int i = column - 2; i <= column + 2; ++i) {
-            const auto wi = static_cast<std::uint32_t>((i + cells) % cells), wj = static_cast<std::uint32_t>((j + cells) % cells);
+            const auto wi = static_cast<std::uint32_t>((i + cells) % cells),
+                       wj = static_cast<std::uint32_t>((j + cells) % cells);
             const float shift = (wj & 1u) != 0 ? 0.5f : 0.0f;
             const float px = static_cast<float>(i) + shift + 0.5f + 0.34f * (hashUnit(wi, wj, seed) - 0.5f);
             const float py = static_cast<float>(j) + 0.5f + 0.3f * (hashUnit(wi, wj, seed + 1) - 0.5f);

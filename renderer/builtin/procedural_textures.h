@@ -6,10 +6,10 @@
 namespace gnomon::renderer {
 
 struct PaintedTexture {
-    Image colour;              // sRGB
-    Image normal;              // glTF convention: green points to the top of the image
-    Image metallicRoughness;   // green roughness, blue metallic (0)
-    float metres = 1.0f;       // edge length of one repeat
+    Image colour;             // sRGB
+    Image normal;             // glTF convention: green points to the top of the image
+    Image metallicRoughness;  // green roughness, blue metallic (0)
+    float metres = 1.0f;      // edge length of one repeat
 };
 
 PaintedTexture paintCobbles(std::uint32_t size);

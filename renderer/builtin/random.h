@@ -8,7 +8,10 @@ namespace gnomon::renderer {
 // PCG32 (O'Neill 2014): 64-bit state, 32 permuted bits out.
 class Random {
 public:
-    explicit Random(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ull + 0xDA3E39CB94B95BDBull) { next(); next(); }
+    explicit Random(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ull + 0xDA3E39CB94B95BDBull) {
+        next();
+        next();
+    }
 
     std::uint32_t next() {
         const std::uint64_t old = state_;

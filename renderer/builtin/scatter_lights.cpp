@@ -1,9 +1,9 @@
 // Scattering lights over any scene, of any size.
 //
-// Place. A random point of a random upward-facing triangle (normal within 60 degrees of up; all triangles where there is
-// none), chosen by area; from there a random way up, 2 to 15 % of the scene's height but at most half of the free way to
-// whatever is above. Refused: outside the bounds, closer than 0.2 % of the bounds' radius to a triangle, or inside a
-// solid. After 64 refusals per light the scene is taken to be full.
+// Place. A random point of a random upward-facing triangle (normal within 60 degrees of up; all triangles where there
+// is none), chosen by area; from there a random way up, 2 to 15 % of the scene's height but at most half of the free
+// way to whatever is above. Refused: outside the bounds, closer than 0.2 % of the bounds' radius to a triangle, or
+// inside a solid. After 64 refusals per light the scene is taken to be full.
 //
 // Range. The mean number of lights in range of a random surface point shall be 4.5 whatever the scene and the count, as
 // in a lit game level. Instead of a formula for an ideal floor the range is found by bisection over 512 random surface
@@ -60,7 +60,9 @@ private:
 glm::vec3 pleasantColour(Random& random) {
     // Half warm (orange to yellow), a third cool (teal to blue), the rest pink and violet; never fully saturated.
     const float kind = random.unit();
-    const float hue = kind < 0.5f ? random.between(0.04f, 0.14f) : kind < 0.83f ? random.between(0.48f, 0.62f) : random.between(0.78f, 0.95f);
+    const float hue = kind < 0.5f    ? random.between(0.04f, 0.14f)
+                      : kind < 0.83f ? random.between(0.48f, 0.62f)
+                                     : random.between(0.78f, 0.95f);
     const float saturation = random.between(0.55f, 0.85f);
     glm::vec3 colour;
     for (int c = 0; c < 3; ++c) {
@@ -86,9 +88,10 @@ std::optional<Place> findPlace(const TriangleGrid& grid, const SurfaceSampler& s
         const float up = above ? std::min(wanted, 0.5f * above->distance) : wanted;
         const Place place{foot + glm::vec3(0, up, 0), up};
         // A flat scene has no height: there, lights hang above its bounds.
-        const bool flat = grid.bounds().max.y - grid.bounds().min.y < 0.2f * radius;
+        const bool flat = grid.bounds().max.y - grid.bounds().min.y < 0.02f * radius;
         if (place.position.y > grid.bounds().max.y && !flat) continue;
-        if (up < clearance || grid.anythingWithin(place.position, clearance) || grid.insideSolid(place.position)) continue;
+        if (up < clearance || grid.anythingWithin(place.position, clearance) || grid.insideSolid(place.position))
+            continue;
         return place;
     }
     return std::nullopt;
@@ -105,7 +108,8 @@ SceneLight makeLight(const Place& place, Random& random, std::uint32_t index) {
     const float cone = kDegree * random.between(20.0f, 60.0f);
     if (spot) {
         light.kind = LightKind::Spot;
-        light.direction = glm::normalize(glm::vec3(std::sin(tilt) * std::cos(turn), -std::cos(tilt), std::sin(tilt) * std::sin(turn)));
+        light.direction = glm::normalize(
+            glm::vec3(std::sin(tilt) * std::cos(turn), -std::cos(tilt), std::sin(tilt) * std::sin(turn)));
         light.outerConeAngle = cone;
         light.innerConeAngle = 0.7f * cone;
     }
@@ -117,7 +121,8 @@ float meanLightsPerPoint(const std::vector<SceneLight>& lights, const std::vecto
     double sum = 0.0;
     for (const SceneLight& light : lights) {
         const float share = light.kind == LightKind::Spot ? 0.5f * (1.0f - std::cos(light.outerConeAngle)) : 1.0f;
-        for (const glm::vec3& p : points) sum += glm::length(p - light.position) < range ? static_cast<double>(share) : 0.0;
+        for (const glm::vec3& p : points)
+            sum += glm::length(p - light.position) < range ? static_cast<double>(share) : 0.0;
     }
     return static_cast<float>(sum / static_cast<double>(points.size()));
 }

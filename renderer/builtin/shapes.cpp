@@ -153,7 +153,9 @@ void ShapeBuilder::tube(std::span<const glm::vec3> path, float radius, int sides
             const glm::vec3 p[4] = {path[i] + radius * n[0], path[i] + radius * n[1], path[i + 1] + radius * n[2],
                                     path[i + 1] + radius * n[3]};
             const float u = radius * kTau / static_cast<float>(sides), k0 = static_cast<float>(k);
-            smoothQuad(p, n, {{k0 * u, -along}, {(k0 + 1) * u, -along}, {(k0 + 1) * u, -along - length}, {k0 * u, -along - length}});
+            smoothQuad(
+                p, n,
+                {{k0 * u, -along}, {(k0 + 1) * u, -along}, {(k0 + 1) * u, -along - length}, {k0 * u, -along - length}});
         }
         along += length;
     }
@@ -166,8 +168,8 @@ void ShapeBuilder::tube(std::span<const glm::vec3> path, float radius, int sides
     polygon(end);
 }
 
-void ShapeBuilder::sheet(const std::function<glm::vec3(float, float)>& position, int columns, int rows, float widthMetres,
-                         float heightMetres) {
+void ShapeBuilder::sheet(const std::function<glm::vec3(float, float)>& position, int columns, int rows,
+                         float widthMetres, float heightMetres) {
     const auto first = static_cast<std::uint32_t>(primitive_.positions.size());
     constexpr float kStep = 0.004f;  // of the parameter: for the normal's differences
     for (int row = 0; row <= rows; ++row) {

@@ -47,7 +47,8 @@ public:
     void arch(const Arch& arch);
 
     // One side of a square ring: a prism along x between z = front and z = back whose ends are mitred at 45 degrees,
-    // at |x| = halfLength - z. Heights are given at front and back. Left out: the mitred ends, which meet the next side.
+    // at |x| = halfLength - z. Heights are given at front and back. Left out: the mitred ends, which meet the next
+    // side.
     struct Mitred {
         float halfLength, front, back, bottomFront, bottomBack, topFront, topBack;
         bool bottom = true;
@@ -60,8 +61,8 @@ private:
     std::uint32_t vertex(const glm::vec3& position, const glm::vec3& normal, const glm::vec2& uv);
     void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
     void smoothQuad(const glm::vec3 (&p)[4], const glm::vec3 (&n)[4], const glm::vec2 (&uv)[4]);
-    void latheBand(glm::vec2 low, glm::vec2 high, glm::vec2 normalLow, glm::vec2 normalHigh, float arcLow, float arcHigh,
-                   float girth, int sides, bool faceted);
+    void latheBand(glm::vec2 low, glm::vec2 high, glm::vec2 normalLow, glm::vec2 normalHigh, float arcLow,
+                   float arcHigh, float girth, int sides, bool faceted);
     void archFace(const Arch& arch, float z);
     void archRing(const Arch& arch, float direction);
 

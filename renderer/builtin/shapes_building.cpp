@@ -35,7 +35,9 @@ void ShapeBuilder::archFace(const Arch& arch, float z) {
 void ShapeBuilder::archRing(const Arch& arch, float direction) {
     const float wall = direction * 0.5f * arch.thickness, face = wall + direction * arch.relief;
     const float inner = arch.radius, outer = arch.radius + arch.ringWidth;
-    const auto at = [&](glm::vec2 d, float radius, float z) { return glm::vec3(radius * d.x, arch.springing + radius * d.y, z); };
+    const auto at = [&](glm::vec2 d, float radius, float z) {
+        return glm::vec3(radius * d.x, arch.springing + radius * d.y, z);
+    };
     const auto flat = [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
         direction > 0.0f ? quad(a, b, c, d) : quad(d, c, b, a);
     };

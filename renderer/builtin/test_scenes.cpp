@@ -36,8 +36,8 @@ SceneLight& addPoint(SceneBuilder& builder, const glm::vec3& at, const glm::vec3
     return builder.scene.lights.back();
 }
 
-SceneLight& addSpot(SceneBuilder& builder, const glm::vec3& at, const glm::vec3& target, const glm::vec3& colour, float candela,
-                    float range, float outerAngle) {
+SceneLight& addSpot(SceneBuilder& builder, const glm::vec3& at, const glm::vec3& target, const glm::vec3& colour,
+                    float candela, float range, float outerAngle) {
     SceneLight& light = addPoint(builder, at, colour, candela, range);
     light.name = "spot";
     light.kind = LightKind::Spot;
@@ -108,7 +108,8 @@ Scene makeColumns(const BuiltinOptions& options) {
     primitives.push_back(column.take());
     const std::uint32_t mesh = b.mesh("column", std::move(primitives));
     for (int z = -5; z <= 5; ++z)
-        for (int x = -5; x <= 5; ++x) b.place(mesh, placed({2.0f * static_cast<float>(x), 0, 2.0f * static_cast<float>(z)}));
+        for (int x = -5; x <= 5; ++x)
+            b.place(mesh, placed({2.0f * static_cast<float>(x), 0, 2.0f * static_cast<float>(z)}));
     Random random(options.seed);
     const std::uint32_t count = options.lightCount != 0 ? options.lightCount : 12;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -117,8 +118,10 @@ Scene makeColumns(const BuiltinOptions& options) {
         const float z = 2.0f * std::floor(random.between(-5.0f, 5.0f)) + random.between(0.5f, 1.5f);
         const glm::vec3 at(x, random.between(0.5f, 2.4f), z);
         const glm::vec3 colour(random.between(0.3f, 1.0f), random.between(0.3f, 1.0f), random.between(0.3f, 1.0f));
-        if (i % 3 == 2) addSpot(b, at, {x + random.between(-1, 1), 0, z + random.between(-1, 1)}, colour, 40.0f, 6.0f, 0.8f);
-        else addPoint(b, at, colour, 15.0f, 5.0f);
+        if (i % 3 == 2)
+            addSpot(b, at, {x + random.between(-1, 1), 0, z + random.between(-1, 1)}, colour, 40.0f, 6.0f, 0.8f);
+        else
+            addPoint(b, at, colour, 15.0f, 5.0f);
     }
     b.camera("default", {-11, 6, 11}, {0, 0, 0}, 0.8f);
     return finished(b);
@@ -164,7 +167,8 @@ Scene makeMasked() {
     m.baseColourTexture.image = b.image(std::move(holes));
     for (const float turn : {-0.7f, 0.0f, 0.7f}) {
         ShapeBuilder panel(material);
-        panel.sheet([](float u, float v) { return glm::vec3(2.0f * (u - 0.5f), 2.2f - 2.0f * v, 0); }, 1, 1, 1.0f, 1.0f);
+        panel.sheet([](float u, float v) { return glm::vec3(2.0f * (u - 0.5f), 2.2f - 2.0f * v, 0); }, 1, 1, 1.0f,
+                    1.0f);
         b.place("panel", panel, placed({3.0f * turn, 0, -1.2f * std::abs(turn)}, -turn));
     }
     addPoint(b, {0.3f, 2.0f, -2.5f}, {1.0f, 0.75f, 0.5f}, 60.0f, 10.0f);

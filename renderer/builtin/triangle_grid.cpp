@@ -14,7 +14,8 @@ float squaredDistance(const glm::vec3& p, const TriangleGrid::Triangle& t) {
         const float k = std::clamp(glm::dot(p - s, d) / glm::dot(d, d), 0.0f, 1.0f);
         return glm::dot(p - s - k * d, p - s - k * d);
     };
-    const bool inside = glm::dot(glm::cross(ab, p - t.a), n) >= 0.0f && glm::dot(glm::cross(t.c - t.b, p - t.b), n) >= 0.0f &&
+    const bool inside = glm::dot(glm::cross(ab, p - t.a), n) >= 0.0f &&
+                        glm::dot(glm::cross(t.c - t.b, p - t.b), n) >= 0.0f &&
                         glm::dot(glm::cross(t.a - t.c, p - t.c), n) >= 0.0f;
     if (inside) {
         const float d = glm::dot(p - t.a, n);
@@ -26,10 +27,12 @@ float squaredDistance(const glm::vec3& p, const TriangleGrid::Triangle& t) {
 void addTriangles(const Scene& scene, const Instance& instance, const Primitive& primitive,
                   std::vector<TriangleGrid::Triangle>& triangles) {
     const bool mirrored = glm::determinant(glm::mat3(instance.worldFromObject)) < 0.0f;
-    const auto world = [&](std::uint32_t i) { return glm::vec3(instance.worldFromObject * glm::vec4(primitive.positions[i], 1.0f)); };
+    const auto world = [&](std::uint32_t i) {
+        return glm::vec3(instance.worldFromObject * glm::vec4(primitive.positions[i], 1.0f));
+    };
     for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
-        TriangleGrid::Triangle t{world(primitive.indices[i]), world(primitive.indices[i + 1]), world(primitive.indices[i + 2]),
-                                 scene.materials[primitive.material].doubleSided};
+        TriangleGrid::Triangle t{world(primitive.indices[i]), world(primitive.indices[i + 1]),
+                                 world(primitive.indices[i + 2]), scene.materials[primitive.material].doubleSided};
         if (mirrored) std::swap(t.b, t.c);
         const float area = glm::length(t.areaNormal());
         if (area > 0.0f && std::isfinite(area)) triangles.push_back(t);
@@ -40,7 +43,8 @@ void addTriangles(const Scene& scene, const Instance& instance, const Primitive&
 
 TriangleGrid::TriangleGrid(const Scene& scene) {
     for (const Instance& instance : scene.instances)
-        for (const Primitive& primitive : scene.meshes[instance.mesh].primitives) addTriangles(scene, instance, primitive, triangles_);
+        for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
+            addTriangles(scene, instance, primitive, triangles_);
     for (const Triangle& t : triangles_)
         for (const glm::vec3& p : {t.a, t.b, t.c}) bounds_.add(p);
     if (triangles_.empty()) return;
@@ -56,11 +60,15 @@ TriangleGrid::TriangleGrid(const Scene& scene) {
 }
 
 void TriangleGrid::fillCells() {
-    starts_.assign(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) * static_cast<std::size_t>(size_[2]) + 1, 0);
+    starts_.assign(
+        static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) * static_cast<std::size_t>(size_[2]) +
+            1,
+        0);
     const float cellRadius = 0.5f * glm::length(cellSize_);
     const auto forCells = [&](const Triangle& t, auto&& use) {
         const glm::vec3 slack = 1e-3f * cellSize_;  // rounding in cast() may not step past a triangle
-        const Cell low = cellOf(glm::min(glm::min(t.a, t.b), t.c) - slack), high = cellOf(glm::max(glm::max(t.a, t.b), t.c) + slack);
+        const Cell low = cellOf(glm::min(glm::min(t.a, t.b), t.c) - slack),
+                   high = cellOf(glm::max(glm::max(t.a, t.b), t.c) + slack);
         const glm::vec3 n = glm::normalize(t.areaNormal());
         for (int z = low[2]; z <= high[2]; ++z)
             for (int y = low[1]; y <= high[1]; ++y)
@@ -88,8 +96,10 @@ TriangleGrid::Cell TriangleGrid::cellOf(const glm::vec3& point) const {
 }
 
 std::size_t TriangleGrid::indexOf(const Cell& cell) const {
-    return (static_cast<std::size_t>(cell[2]) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(cell[1])) *
-               static_cast<std::size_t>(size_[0]) + static_cast<std::size_t>(cell[0]);
+    return (static_cast<std::size_t>(cell[2]) * static_cast<std::size_t>(size_[1]) +
+            static_cast<std::size_t>(cell[1])) *
+               static_cast<std::size_t>(size_[0]) +
+           static_cast<std::size_t>(cell[0]);
 }
 
 // Möller and Trumbore 1997, both sides.
@@ -109,7 +119,8 @@ void TriangleGrid::castInCell(std::size_t cell, const glm::vec3& origin, const g
     }
 }
 
-std::optional<TriangleGrid::Hit> TriangleGrid::cast(const glm::vec3& origin, const glm::vec3& direction, float reach) const {
+std::optional<TriangleGrid::Hit> TriangleGrid::cast(const glm::vec3& origin, const glm::vec3& direction,
+                                                    float reach) const {
     if (triangles_.empty()) return std::nullopt;
     float enter = 0.0f, leave = reach;
     for (int k = 0; k < 3; ++k) {
@@ -130,9 +141,14 @@ std::optional<TriangleGrid::Hit> TriangleGrid::cast(const glm::vec3& origin, con
         int axis = 0;
         for (int k = 0; k < 3; ++k) {
             if (direction[k] == 0.0f) continue;
-            const float wall = bounds_.min[k] + static_cast<float>(cell[static_cast<std::size_t>(k)] + (direction[k] > 0.0f)) * cellSize_[k];
+            const float wall =
+                bounds_.min[k] +
+                static_cast<float>(cell[static_cast<std::size_t>(k)] + (direction[k] > 0.0f)) * cellSize_[k];
             const float at = (wall - origin[k]) / direction[k];
-            if (at < exit) { exit = at; axis = k; }
+            if (at < exit) {
+                exit = at;
+                axis = k;
+            }
         }
         if (nearest && nearest->distance <= exit) break;
         const auto i = static_cast<std::size_t>(axis);

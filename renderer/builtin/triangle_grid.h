@@ -36,7 +36,8 @@ private:
     using Cell = std::array<int, 3>;
     [[nodiscard]] Cell cellOf(const glm::vec3& point) const;
     [[nodiscard]] std::size_t indexOf(const Cell& cell) const;
-    void castInCell(std::size_t cell, const glm::vec3& origin, const glm::vec3& direction, std::optional<Hit>& nearest) const;
+    void castInCell(std::size_t cell, const glm::vec3& origin, const glm::vec3& direction,
+                    std::optional<Hit>& nearest) const;
     void fillCells();
 
     std::vector<Triangle> triangles_;

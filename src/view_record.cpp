@@ -68,6 +68,13 @@ void recordPass(View::State& state, VkCommandBuffer commands, PassId id, std::ui
     if (context.device.debugLabels) vk.CmdEndDebugUtilsLabelEXT(commands);
 }
 
+// Makes everything written so far visible to the host's shaders and to indirect dispatch.
+void publish(View::State& state, VkCommandBuffer commands) {
+    globalBarrier(state.context->device.vk, commands, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, kStorageAccess | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
+    state.pendingReads = state.pendingWrites = 0;
+}
+
 // Images that are bound but never read still need the layout that their descriptor names.
 void preparePlaceholders(View::State& state, VkCommandBuffer commands) {
     if (state.placeholdersReady) return;
@@ -113,6 +120,17 @@ void resetFrame(View::State& state, VkCommandBuffer commands) {
     state.pendingReads = state.pendingWrites = 0;
 }
 
+// A frame without phase 4 has no final lists; what an earlier frame left must not be counted.
+void clearFinalCounts(View::State& state, VkCommandBuffer commands) {
+    const Functions& vk = state.context->device.vk;
+    globalBarrier(vk, commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, kStorageAccess,
+                  VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    vk.CmdFillBuffer(commands, state.device[kBindFinalCounts].buffer, state.desc.guardBytes,
+                     state.sizes.bytes[kBindFinalCounts], 0);
+    globalBarrier(vk, commands, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, kCompute,
+                  kStorageAccess);
+}
+
 // A pool that would have sufficed, with a tenth to spare: what a host may grow to between frames.
 std::uint32_t recommend(std::uint32_t used) {
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(std::uint64_t(used) + used / 10 + 1, 0xFFFFFFFFu));
@@ -150,20 +168,18 @@ void View::recordFindLightsApproximate(VkCommandBuffer commands) noexcept {
 
 void View::recordFindLightsAccurate(VkCommandBuffer commands) noexcept {
     recordPass(*state_, commands, kPassFindLightsAccurate, state_->frame.tileCounts.x, state_->frame.tileCounts.y);
+    publish(*state_, commands);
 }
 
 void View::recordGenerateShadows(VkCommandBuffer commands) noexcept {
-    State& state = *state_;
-    recordPass(state, commands, kPassGenerateShadows, state.frame.tileCounts.x, state.frame.tileCounts.y);
-    globalBarrier(state.context->device.vk, commands, kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                  VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT | kStorageAccess);
-    state.pendingReads = state.pendingWrites = 0;
+    recordPass(*state_, commands, kPassGenerateShadows, state_->frame.tileCounts.x, state_->frame.tileCounts.y);
+    publish(*state_, commands);
 }
 
 void View::recordEndFrame(VkCommandBuffer commands) noexcept {
     State& state = *state_;
     const Functions& vk = state.context->device.vk;
+    if ((state.slots[state.current].passBits >> kPassGenerateShadows & 1u) == 0) clearFinalCounts(state, commands);
     if (state.desc.statistics) {
         const std::uint32_t tiles = state.frame.tileCounts.x * state.frame.tileCounts.y;
         recordPass(state, commands, kPassGatherStatistics, divideRoundingUp(tiles, kWorkGroupSize), 1);

@@ -198,9 +198,11 @@ public:
     // no barrier by the host as long as everything runs on one queue; across queues a semaphore is enough.
     void recordHierarchicalDepth(VkCommandBuffer commands) noexcept;
     void recordFindLightsApproximate(VkCommandBuffer commands) noexcept;
+    /// Afterwards the early lists are visible to all shaders. A host that evaluates every shadow while lighting may leave
+    /// out phase 4.
     void recordFindLightsAccurate(VkCommandBuffer commands) noexcept;
-    /// Afterwards the lists, the visibility and the indirect command are visible to compute and fragment shaders and to
-    /// indirect dispatch.
+    /// Afterwards the final lists, the visibility and the indirect command are visible to all shaders and to indirect
+    /// dispatch.
     void recordGenerateShadows(VkCommandBuffer commands) noexcept;
     void recordEndFrame(VkCommandBuffer commands) noexcept;
 

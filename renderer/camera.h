@@ -1,0 +1,19 @@
+#pragma once
+// From the scene's camera to the library's.
+
+#include <glm/glm.hpp>
+
+#include "gnomon/scene.h"
+#include "renderer/scene/scene.h"
+
+namespace gnomon::renderer {
+
+/// The frame's origin for a camera: its position on a grid of 1024 m, or the world's own origin while the camera is
+/// within 1024 m of it. A float step there is at most 0.06 mm.
+glm::dvec3 frameOriginOf(const SceneCamera& camera);
+
+/// Matrices relative to `origin`, for an extent in pixels. Clip space is Vulkan's, y down.
+Camera cameraOf(const SceneCamera& camera, const glm::dvec3& origin, std::uint32_t widthPx, std::uint32_t heightPx,
+                DeviceDepth depth);
+
+}  // namespace gnomon::renderer

@@ -1,0 +1,306 @@
+#include "renderer/renderer.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/packing.hpp>
+
+#include "gpu_interface/numbers.h"
+#include "renderer/camera.h"
+#include "renderer/gbuffer/gbuffer.h"
+#include "renderer/gpu/error.h"
+#include "renderer/gpu/gpu_scene.h"
+#include "renderer/gpu/timer.h"
+#include "renderer/lighting/lighting.h"
+#include "renderer/shadow_atlas/plan.h"
+#include "renderer/shadow_atlas/shadow_atlas.h"
+
+namespace gnomon::renderer {
+namespace {
+
+constexpr std::uint32_t kFramesInFlight = 2;
+
+void require(const Result& result) {
+    if (!result) throw GpuError(result.message());
+}
+
+std::unique_ptr<Context> makeContext(const Device& device, const RendererDesc& desc) {
+    const std::uint32_t family = device.queueFamily();
+    ContextDesc c;
+    c.instance = device.instance().handle();
+    c.physicalDevice = device.physical();
+    c.device = device.handle();
+    c.getInstanceProcAddr = vkGetInstanceProcAddr;
+    c.pipelineCache = device.pipelineCache();
+    c.queueFamilies = std::span(&family, 1);
+    c.debugLabels = device.instance().debugLabels();
+    c.subgroupSize = desc.subgroupSize;
+    c.filter = desc.filter;
+    c.pcfRadius = desc.pcfRadius;
+    c.listReservation = desc.listReservation;
+    c.fixedListEntriesPerTile = desc.fixedListEntriesPerTile;
+    std::unique_ptr<Context> context;
+    require(Context::create(c, context));
+    return context;
+}
+
+std::unique_ptr<View> makeView(const Context& context, const RendererDesc& desc) {
+    ViewDesc v;
+    v.maxWidthPx = desc.widthPx;
+    v.maxHeightPx = desc.heightPx;
+    v.framesInFlight = kFramesInFlight;
+    v.listEntries = desc.listEntries;
+    v.visibilitySlots = desc.visibilitySlots;
+    v.maxShadowViews = gpu::kMaxLightsPerView * gpu::kPointLightFaces;
+    std::unique_ptr<View> view;
+    require(View::create(context, v, view));
+    return view;
+}
+
+LightType typeOf(LightKind kind) {
+    switch (kind) {
+        case LightKind::Point: return LightType::Point;
+        case LightKind::Spot: return LightType::Spot;
+        case LightKind::Directional: return LightType::Directional;
+    }
+    return LightType::Point;
+}
+
+Light lightOf(const SceneLight& light, const glm::dvec3& origin, std::uint32_t firstShadowView) {
+    Light l;
+    l.type = typeOf(light.kind);
+    const glm::vec3 position(glm::dvec3(light.position) - origin);
+    std::memcpy(l.position, &position, sizeof(l.position));
+    std::memcpy(l.direction, &light.direction, sizeof(l.direction));
+    l.rangeMetres = light.rangeMetres;
+    l.intensity = light.intensity * std::max({light.colour.x, light.colour.y, light.colour.z});
+    l.outerConeAngle = std::min(light.outerConeAngle, 1.55f);
+    l.sourceRadius = light.sourceRadius;
+    l.firstShadowView = firstShadowView;
+    return l;
+}
+
+ShadowPlanCamera planCameraOf(const SceneCamera& camera, const GBufferCamera& gbuffer, const glm::dvec3& origin,
+                              std::uint32_t heightPx) {
+    ShadowPlanCamera c;
+    c.position = glm::dvec3(camera.worldFromCamera[3]);
+    c.pixelsPerRadian = static_cast<float>(heightPx) / (2.0f * std::tan(0.5f * camera.verticalFieldOfView));
+    c.orthographic = camera.orthographic;
+    c.pixelsPerMetre = static_cast<float>(heightPx) / (2.0f * std::max(camera.orthographicHalfHeight, 1e-6f));
+    c.frustum = cullVolumeOf(gbuffer.clipFromWorld, origin);
+    return c;
+}
+
+ShadowPlanSettings planSettingsOf(const Device& device, const RendererDesc& desc) {
+    ShadowPlanSettings settings;
+    const std::uint32_t largest = std::bit_floor(device.limits().maxFramebufferWidth);
+    const std::uint32_t wanted = desc.atlasSizePx != 0 ? desc.atlasSizePx
+                                                       : ShadowAtlasImage::defaultSizePx(device, desc.heightPx);
+    settings.atlasSizePx = std::min(std::bit_floor(wanted), largest);
+    return settings;
+}
+
+}  // namespace
+
+struct Renderer::State {
+    const Device& device;
+    RendererDesc desc;
+    std::vector<SceneLight> sceneLights;
+    std::vector<ShadowLight> shadowLights;
+    std::unique_ptr<Context> context;
+    std::unique_ptr<View> view;
+    GpuScene scene;
+    GBuffer gbuffer;
+    ShadowPlanner planner;
+    ShadowAtlasImage atlas;
+    Lighting lighting;
+    GpuTimer timer;
+    Commands commands[kFramesInFlight];
+    std::uint64_t frameNumber = 0;
+    struct Known {
+        std::uint64_t frameNumber = ~0ull;
+        FrameReport report;  // all but statistics and passes
+    } known[kFramesInFlight];
+
+    State(const Device& d, const Scene& s, const RendererDesc& r)
+        : device(d),
+          desc(r),
+          sceneLights(s.lights),
+          context(makeContext(d, r)),
+          view(makeView(*context, r)),
+          scene(d, s),
+          gbuffer(d, scene, r.widthPx, r.heightPx),
+          planner(planSettingsOf(d, r)),
+          atlas(d, scene, planner.settings().atlasSizePx),
+          lighting(d, *context, s, gbuffer, r.quantiseInline),
+          timer(d, kFramesInFlight),
+          commands{Commands(d), Commands(d)} {
+        std::ranges::transform(sceneLights, std::back_inserter(shadowLights), shadowLightOf);
+    }
+
+    void beginView(const Camera& camera, const glm::dvec3& origin, const ShadowPlan& plan);
+    void recordPasses(VkCommandBuffer c, const GBufferCamera& camera, const ShadowPlan& plan, ShadowMode mode,
+                      FrameReport& report);
+};
+
+Renderer::Renderer(const Device& device, const Scene& scene, const RendererDesc& desc)
+    : state_(std::make_unique<State>(device, scene, desc)) {}
+
+Renderer::~Renderer() {
+    if (state_ != nullptr) state_->device.waitIdle();
+}
+
+// Phase 1 and everything else the library wants to know of the frame.
+void Renderer::State::beginView(const Camera& camera, const glm::dvec3& origin, const ShadowPlan& plan) {
+    std::vector<Light> lights;
+    lights.reserve(sceneLights.size());
+    for (std::size_t i = 0; i < sceneLights.size(); ++i) {
+        const bool casts = sceneLights[i].casts && plan.firstView[i] != kNoShadowViews;
+        lights.push_back(lightOf(sceneLights[i], origin, casts ? plan.firstView[i] : kNoShadowViews));
+    }
+    std::vector<ShadowView> views;
+    views.reserve(plan.views.size());
+    for (const PlannedView& planned : plan.views) views.push_back(planned.view);
+    const ShadowAtlas atlases[] = {atlas.atlas()};
+    FrameDesc frame;
+    frame.frameNumber = frameNumber;
+    frame.view.camera = camera;
+    frame.view.widthPx = desc.widthPx;
+    frame.view.heightPx = desc.heightPx;
+    frame.view.lights = lights;
+    frame.shadowViews = views;
+    frame.depth = {gbuffer.depth().view()};
+    frame.faceNormals = {gbuffer.view(GBuffer::FaceNormal)};
+    frame.receiverFlags = {gbuffer.view(GBuffer::Receiver)};
+    frame.atlases = atlases;
+    require(view->beginFrame(frame));
+}
+
+void Renderer::State::recordPasses(VkCommandBuffer c, const GBufferCamera& camera, const ShadowPlan& plan,
+                                   ShadowMode mode, FrameReport& report) {
+    {
+        const GpuScope scope(&timer, c, "gbuffer");
+        gbuffer.record(c, scene, camera);
+    }
+    view->recordHierarchicalDepth(c);
+    view->recordFindLightsApproximate(c);
+    view->recordFindLightsAccurate(c);
+    {
+        const GpuScope scope(&timer, c, "shadow_atlas");
+        const ShadowAtlasStatistics drawn = atlas.record(c, scene, shadowLights, plan);
+        report.shadowViewsDrawn = drawn.viewsDrawn;
+        report.shadowTrianglesDrawn = drawn.triangles;
+    }
+    switch (mode) {
+        case ShadowMode::Deferred:
+            view->recordGenerateShadows(c);
+            lighting.recordDeferred(c, *view, &timer);
+            break;
+        case ShadowMode::Inline: lighting.recordInline(c, *view, LightingVariant::Inline, &timer); break;
+        case ShadowMode::Off: lighting.recordInline(c, *view, LightingVariant::Unshadowed, &timer); break;
+    }
+    view->recordEndFrame(c);
+}
+
+std::uint64_t Renderer::renderFrame(const SceneCamera& sceneCamera, ShadowMode mode) {
+    State& s = *state_;
+    const std::uint64_t number = s.frameNumber;
+    Commands& commands = s.commands[number % kFramesInFlight];
+    const VkCommandBuffer c = commands.begin();
+    s.timer.beginFrame(c, number);
+    const glm::dvec3 origin = frameOriginOf(sceneCamera);
+    const Camera camera = cameraOf(sceneCamera, origin, s.desc.widthPx, s.desc.heightPx, s.desc.deviceDepth);
+    const GBufferCamera gbufferCamera = gbufferCameraOf(camera);
+    s.scene.recordTransforms(c, origin);
+    const ShadowPlan plan =
+        s.planner.plan(s.shadowLights, planCameraOf(sceneCamera, gbufferCamera, origin, s.desc.heightPx), origin);
+    s.beginView(camera, origin, plan);
+
+    State::Known& known = s.known[number % kFramesInFlight];
+    known = {};
+    known.frameNumber = number;
+    known.report.shadowViews = static_cast<std::uint32_t>(plan.views.size());
+    known.report.shadowLightsShrunk = plan.lightsShrunk;
+    known.report.shadowLightsDropped = plan.lightsWithout;
+    known.report.atlasSizePx = s.planner.settings().atlasSizePx;
+    s.recordPasses(c, gbufferCamera, plan, mode, known.report);
+    commands.submit();
+    ++s.frameNumber;
+    return number;
+}
+
+void Renderer::wait() {
+    for (Commands& commands : state_->commands) commands.wait();
+}
+
+FrameReport Renderer::report(std::uint64_t frameNumber) const {
+    const State& s = *state_;
+    const State::Known& known = s.known[frameNumber % kFramesInFlight];
+    FrameReport report = known.report;
+    if (known.frameNumber != frameNumber || !s.view->statistics(frameNumber, report.statistics)) {
+        throw GpuError("The report of a frame was asked for that is not known any more.");
+    }
+    const FrameStatistics& statistics = report.statistics;
+    const auto library = [&](const std::string& name) {
+        for (std::uint32_t i = 0; i < statistics.passCount; ++i) {
+            if (name == statistics.passes[i].name) report.passes.push_back({name, statistics.passes[i].milliseconds, false});
+        }
+    };
+    // In order of execution: the library's phases stand between the renderer's own passes.
+    for (const GpuTime& time : s.timer.times(frameNumber)) {
+        const bool drawing = time.name == "gbuffer" || time.name == "shadow_atlas";
+        report.passes.push_back({time.name, time.milliseconds, drawing});
+        if (time.name == "gbuffer") {
+            library("hierarchical_depth");
+            library("find_lights_approximate");
+            library("find_lights_accurate");
+        }
+        if (time.name == "shadow_atlas") library("generate_shadows");
+    }
+    if (!report.passes.empty()) library("gather_statistics");
+    return report;
+}
+
+HdrPicture Renderer::readPicture() {
+    wait();
+    const GpuImage& image = state_->lighting.picture();
+    const std::vector<std::uint8_t> bytes = readImage(state_->device, image, VK_IMAGE_LAYOUT_GENERAL);
+    HdrPicture picture;
+    picture.width = state_->desc.widthPx;
+    picture.height = state_->desc.heightPx;
+    picture.rgba.resize(std::size_t(picture.width) * picture.height * 4);
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
+        std::uint16_t half;
+        std::memcpy(&half, bytes.data() + 2 * i, 2);
+        picture.rgba[i] = glm::unpackHalf1x16(half);
+    }
+    return picture;
+}
+
+std::vector<std::uint32_t> Renderer::readTriangleIds() {
+    wait();
+    const std::vector<std::uint8_t> bytes = readImage(state_->device, state_->gbuffer.image(GBuffer::TriangleId),
+                                                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    std::vector<std::uint32_t> ids(bytes.size() / 4);
+    std::memcpy(ids.data(), bytes.data(), ids.size() * 4);
+    return ids;
+}
+
+std::vector<MemoryUseRow> Renderer::memory() const {
+    const State& s = *state_;
+    std::vector<MemoryUseRow> rows;
+    const MemoryReport& library = s.view->memory();
+    for (std::uint32_t i = 0; i < library.bufferCount; ++i) {
+        rows.push_back({library.buffers[i].name, library.buffers[i].bytes, true});
+    }
+    for (const auto& part : {s.scene.memoryRows(), s.gbuffer.memoryRows(), s.atlas.memoryRows(), s.lighting.memoryRows()}) {
+        for (const MemoryRow& row : part) rows.push_back({row.name, row.bytes, false});
+    }
+    return rows;
+}
+
+const MemoryReport& Renderer::libraryMemory() const { return state_->view->memory(); }
+std::uint32_t Renderer::subgroupSize() const { return state_->context->subgroupSize(); }
+
+}  // namespace gnomon::renderer

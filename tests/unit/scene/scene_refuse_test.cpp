@@ -89,6 +89,7 @@ TEST(SceneRefuse, Accessors) {
     expectRefused(replaced(good, R"("componentType":5123)", R"("componentType":5126)"), "");
     expectRefused(replaced(good, R"("bufferView":0)", R"("bufferView":9)"), "bufferView 9");
     expectRefused(replaced(good, R"("bufferView":0,)", ""), "without a bufferView");
+    expectRefused(replaced(good, R"("byteLength":36)", R"("byteLength":8)"), "wants");  // less than one element
     expectRefused(replaced(good, R"("byteLength":36)", R"("byteLength":99999)"), "past the end");
     expectRefused(replaced(good, R"("byteOffset":36)", R"("byteOffset":18446744073709551600)"), "past the end");
     expectRefused(replaced(good, R"("byteLength":36)", R"("byteLength":36,"byteStride":4)"), "apart");

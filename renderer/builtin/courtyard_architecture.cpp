@@ -11,7 +11,7 @@
 namespace gnomon::renderer::courtyard {
 namespace {
 
-constexpr float kPierHalf = 0.3f;
+constexpr float kPierHalf = 0.31f;
 constexpr int kTilesPerStrip = 7;
 constexpr int kTileSides = 4;
 constexpr float kTileWidth = 0.325f, kTileLength = 0.57f;

@@ -29,7 +29,7 @@ void addPoint(Parts& parts, const char* name, const glm::vec3& at, const glm::ve
 void addCage(ShapeBuilder& cage, float low, float high) {
     constexpr float kHalf = 0.1f, kBar = 0.006f;
     for (const float x : {-kHalf, kHalf})
-        for (const float z : {-kHalf, kHalf}) cage.box({x - kBar, low, z - kBar}, {x + kBar, high, z + kBar});
+        for (const float z : {-kHalf, kHalf}) cage.box({x - kBar, low - 0.004f, z - kBar}, {x + kBar, high, z + kBar});
     for (const float y : {low, high - 0.05f}) {  // none at the light's own height: it would darken the horizon
         for (const float s : {-kHalf, kHalf}) {
             cage.box({-kHalf, y, s - 0.8f * kBar}, {kHalf, y + 0.012f, s + 0.8f * kBar});
@@ -201,7 +201,7 @@ void addSpots(Parts& parts) {
     // From the gallery floors through the balusters, whose shadows run across the court.
     addSpot(parts, lamp, {4.55f, 5.35f, -10.0f}, {1.5f, 0.0f, 2.5f}, kWarm, 1500, 0.55f, 20.0f, 0.004f);
     addSpot(parts, lamp, {13.9f, 5.35f, 2.6f}, {2.0f, 0.0f, 3.0f}, kAmber, 1300, 0.55f, 20.0f, 0.004f);
-    addSpot(parts, lamp, {12.62f, 6.95f, -4.55f}, {4.5f, 0.0f, -6.0f}, {0.75f, 0.55f, 1.0f}, 300, 0.5f);
+    addSpot(parts, lamp, {-7.15f, 5.35f, 10.0f}, {-3.6f, 0.0f, 0.5f}, kCool, 1500, 0.55f, 20.0f, 0.004f);
 }
 
 // A lamp that floats in the basin, and the moon.

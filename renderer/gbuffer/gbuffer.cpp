@@ -21,9 +21,9 @@ struct Push {
     glm::vec4 eye;
 };
 
-constexpr const char* kNames[GBuffer::kColourCount] = {"gbuffer base colour", "gbuffer normal",   "gbuffer material",
-                                                       "gbuffer emissive",    "gbuffer face normal", "gbuffer receiver flags",
-                                                       "gbuffer triangle id"};
+constexpr const char* kNames[GBuffer::kColourCount] = {
+    "gbuffer base colour", "gbuffer normal",         "gbuffer material",   "gbuffer emissive",
+    "gbuffer face normal", "gbuffer receiver flags", "gbuffer triangle id"};
 
 }  // namespace
 
@@ -48,7 +48,8 @@ GBufferCamera gbufferCameraOf(const Camera& camera) {
     return out;
 }
 
-GBuffer::GBuffer(const Device& device, const GpuScene& scene, std::uint32_t width, std::uint32_t height) : device_(device) {
+GBuffer::GBuffer(const Device& device, const GpuScene& scene, std::uint32_t width, std::uint32_t height)
+    : device_(device) {
     const VkDescriptorSetLayout sets[] = {scene.sceneSetLayout(), scene.materialSetLayout()};
     layout_ = makePipelineLayout(device, sets, VK_SHADER_STAGE_VERTEX_BIT, sizeof(Push));
     GraphicsPipelineDesc desc;
@@ -67,8 +68,8 @@ GBuffer::GBuffer(const Device& device, const GpuScene& scene, std::uint32_t widt
 void GBuffer::resize(std::uint32_t width, std::uint32_t height) {
     const VkPhysicalDeviceLimits& limits = device_.limits();
     if (width > limits.maxFramebufferWidth || height > limits.maxFramebufferHeight) {
-        throw GpuError("'" + device_.info().name + "' draws at most " + std::to_string(limits.maxFramebufferWidth) + "x" +
-                       std::to_string(limits.maxFramebufferHeight) + " pixels; choose a smaller resolution.");
+        throw GpuError("'" + device_.info().name + "' draws at most " + std::to_string(limits.maxFramebufferWidth) +
+                       "x" + std::to_string(limits.maxFramebufferHeight) + " pixels; choose a smaller resolution.");
     }
     ImageDesc desc;
     desc.width = width;
@@ -81,7 +82,8 @@ void GBuffer::resize(std::uint32_t width, std::uint32_t height) {
     }
     desc.name = "gbuffer depth";
     desc.format = kDepthFormat;
-    desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    desc.usage =
+        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     depth_ = GpuImage(device_, desc);
     extent_ = {width, height};
 }
@@ -123,17 +125,20 @@ void GBuffer::beginRendering(VkCommandBuffer commands, VkExtent2D active, Device
     info.pColorAttachments = attachments.data();
     info.pDepthAttachment = &depth;
     vkCmdBeginRendering(commands, &info);
-    const VkViewport viewport{0.0f, 0.0f, static_cast<float>(active.width), static_cast<float>(active.height), 0.0f, 1.0f};
+    const VkViewport viewport{0.0f, 0.0f, static_cast<float>(active.width), static_cast<float>(active.height),
+                              0.0f, 1.0f};
     const VkRect2D scissor{{0, 0}, active};
     vkCmdSetViewport(commands, 0, 1, &viewport);
     vkCmdSetScissor(commands, 0, 1, &scissor);
 }
 
-GBufferStatistics GBuffer::drawRanges(VkCommandBuffer commands, const GpuScene& scene, const GBufferCamera& camera) const {
+GBufferStatistics GBuffer::drawRanges(VkCommandBuffer commands, const GpuScene& scene,
+                                      const GBufferCamera& camera) const {
     GBufferStatistics statistics;
     const Push push{camera.clipFromWorld, camera.eye};
     vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(push), &push);
-    vkCmdSetDepthCompareOp(commands, camera.deviceDepth == DeviceDepth::ReversedZ ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS);
+    vkCmdSetDepthCompareOp(commands,
+                           camera.deviceDepth == DeviceDepth::ReversedZ ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS);
     const VkDescriptorSet sceneSet = scene.sceneSet();
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &sceneSet, 0, nullptr);
     VkPipeline bound = VK_NULL_HANDLE;
@@ -163,7 +168,8 @@ GBufferStatistics GBuffer::drawRanges(VkCommandBuffer commands, const GpuScene& 
 
 GBufferStatistics GBuffer::record(VkCommandBuffer commands, const GpuScene& scene, const GBufferCamera& camera,
                                   std::uint32_t activeWidth, std::uint32_t activeHeight) {
-    const VkExtent2D active{activeWidth != 0 ? activeWidth : extent_.width, activeHeight != 0 ? activeHeight : extent_.height};
+    const VkExtent2D active{activeWidth != 0 ? activeWidth : extent_.width,
+                            activeHeight != 0 ? activeHeight : extent_.height};
     if (active.width > extent_.width || active.height > extent_.height) {
         throw GpuError("The active extent is larger than the G-buffer; resize it first.");
     }

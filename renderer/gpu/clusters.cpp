@@ -15,12 +15,14 @@ std::uint32_t spread(std::uint32_t v) {
     return (v | (v << 2)) & 0x09249249u;
 }
 
-std::vector<std::uint32_t> mortonOrder(const std::vector<glm::vec3>& positions, const std::vector<std::uint32_t>& indices) {
+std::vector<std::uint32_t> mortonOrder(const std::vector<glm::vec3>& positions,
+                                       const std::vector<std::uint32_t>& indices) {
     const std::size_t count = indices.size() / 3;
     std::vector<glm::vec3> centroids(count);
     glm::vec3 low(std::numeric_limits<float>::infinity()), high(-std::numeric_limits<float>::infinity());
     for (std::size_t t = 0; t < count; ++t) {
-        centroids[t] = (positions[indices[3 * t]] + positions[indices[3 * t + 1]] + positions[indices[3 * t + 2]]) / 3.0f;
+        centroids[t] =
+            (positions[indices[3 * t]] + positions[indices[3 * t + 1]] + positions[indices[3 * t + 2]]) / 3.0f;
         low = glm::min(low, centroids[t]);
         high = glm::max(high, centroids[t]);
     }
@@ -62,7 +64,8 @@ ClusteredTriangles makeClusters(const std::vector<glm::vec3>& positions, const s
         forEachVertex([&](const glm::vec3& p) { low = glm::min(low, p), high = glm::max(high, p); });
         cluster.centre = 0.5f * (low + high);
         float radius2 = 0.0f;
-        forEachVertex([&](const glm::vec3& p) { radius2 = std::max(radius2, glm::dot(p - cluster.centre, p - cluster.centre)); });
+        forEachVertex(
+            [&](const glm::vec3& p) { radius2 = std::max(radius2, glm::dot(p - cluster.centre, p - cluster.centre)); });
         // Rounded up: the sphere must hold every vertex in spite of float arithmetic.
         cluster.radius = std::sqrt(radius2) * (1.0f + 1e-6f) + 1e-6f * glm::length(cluster.centre);
         result.clusters.push_back(cluster);

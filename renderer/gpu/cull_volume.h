@@ -7,7 +7,7 @@ namespace gnomon::renderer {
 
 /// Planes of a frustum around the frame's origin and, optionally, a sphere (a light's range).
 struct CullVolume {
-    glm::dvec3 origin{0.0};  ///< world position that the planes are relative to
+    glm::dvec3 origin{0.0};    ///< world position that the planes are relative to
     glm::vec4 planes[6] = {};  ///< xyz unit, into the volume: outside iff dot(xyz, p - origin) + w < -radius
     int planeCount = 0;
     bool hasSphere = false;

@@ -10,8 +10,8 @@ Device::Device(const VulkanInstance& instance, const DeviceInfo& info, const std
     create(extensions);
     vkGetDeviceQueue(device_, info_.queueFamily, 0, &queue_);
     memory_ = std::make_unique<MemoryPool>(info_.handle, device_);
-    VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr, VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
-                                 info_.queueFamily};
+    VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr,
+                                 VK_COMMAND_POOL_CREATE_TRANSIENT_BIT, info_.queueFamily};
     check(vkCreateCommandPool(device_, &pool, nullptr, &immediatePool_), "creating a command pool");
     VkPipelineCacheCreateInfo cache{};
     cache.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
@@ -83,11 +83,14 @@ void Device::submitAndWait(const std::function<void(VkCommandBuffer)>& record) c
     commands.wait();
 }
 
-void Device::waitIdle() const { check(vkDeviceWaitIdle(device_), "waiting for the device"); }
+void Device::waitIdle() const {
+    check(vkDeviceWaitIdle(device_), "waiting for the device");
+}
 
 void Device::name(VkObjectType type, std::uint64_t object, const std::string& name) const {
     if (!instance_.debugLabels()) return;
-    VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr, type, object, name.c_str()};
+    VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr, type, object,
+                                       name.c_str()};
     vkSetDebugUtilsObjectNameEXT(device_, &info);
 }
 
@@ -104,8 +107,8 @@ void Device::endLabel(VkCommandBuffer commands) const {
 }
 
 Commands::Commands(const Device& device) : device_(device) {
-    VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr, VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
-                                 device.queueFamily()};
+    VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr,
+                                 VK_COMMAND_POOL_CREATE_TRANSIENT_BIT, device.queueFamily()};
     check(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_), "creating a command pool");
     VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, pool_,
                                          VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
@@ -161,6 +164,8 @@ void Commands::wait() {
     submitted_ = false;
 }
 
-bool Commands::finished() const { return !submitted_ || vkGetFenceStatus(device_.handle(), fence_) == VK_SUCCESS; }
+bool Commands::finished() const {
+    return !submitted_ || vkGetFenceStatus(device_.handle(), fence_) == VK_SUCCESS;
+}
 
 }  // namespace gnomon::renderer

@@ -14,15 +14,18 @@ void GpuScene::placeItem(DrawItem& item) {
     // A bound of the largest stretch: the Frobenius norm; the column maximum would be too small under shear.
     const glm::dmat3 m(item.worldFromObject);
     const double columns[3] = {glm::length(m[0]), glm::length(m[1]), glm::length(m[2])};
-    const bool orthogonal = std::abs(glm::dot(m[0], m[1])) + std::abs(glm::dot(m[0], m[2])) + std::abs(glm::dot(m[1], m[2])) <
-                            1e-6 * (columns[0] * columns[0] + columns[1] * columns[1] + columns[2] * columns[2]);
-    const double stretch = orthogonal ? std::max({columns[0], columns[1], columns[2]}) * (1.0 + 1e-5)
-                                      : std::sqrt(columns[0] * columns[0] + columns[1] * columns[1] + columns[2] * columns[2]);
+    const bool orthogonal =
+        std::abs(glm::dot(m[0], m[1])) + std::abs(glm::dot(m[0], m[2])) + std::abs(glm::dot(m[1], m[2])) <
+        1e-6 * (columns[0] * columns[0] + columns[1] * columns[1] + columns[2] * columns[2]);
+    const double stretch = orthogonal
+                               ? std::max({columns[0], columns[1], columns[2]}) * (1.0 + 1e-5)
+                               : std::sqrt(columns[0] * columns[0] + columns[1] * columns[1] + columns[2] * columns[2]);
     glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
     for (std::uint32_t c = 0; c < item.clusterCount; ++c) {
         const Cluster& cluster = clusters_[geometry.firstCluster + c];
         WorldSphere& sphere = worldClusters_[item.firstWorldCluster + c];
-        sphere.centre = glm::dvec3(item.worldFromObject * glm::dvec4(glm::dvec3(cluster.centre) + geometry.offset, 1.0));
+        sphere.centre =
+            glm::dvec3(item.worldFromObject * glm::dvec4(glm::dvec3(cluster.centre) + geometry.offset, 1.0));
         sphere.radius = static_cast<float>(static_cast<double>(cluster.radius) * stretch);
         low = glm::min(low, sphere.centre - static_cast<double>(sphere.radius));
         high = glm::max(high, sphere.centre + static_cast<double>(sphere.radius));
@@ -31,7 +34,8 @@ void GpuScene::placeItem(DrawItem& item) {
     item.radius = 0.0f;
     for (std::uint32_t c = 0; c < item.clusterCount; ++c) {
         const WorldSphere& sphere = worldClusters_[item.firstWorldCluster + c];
-        item.radius = std::max(item.radius, static_cast<float>(glm::length(sphere.centre - item.centre)) + sphere.radius);
+        item.radius =
+            std::max(item.radius, static_cast<float>(glm::length(sphere.centre - item.centre)) + sphere.radius);
     }
 }
 
@@ -91,8 +95,13 @@ void GpuScene::recordTransforms(VkCommandBuffer commands, const glm::dvec3& orig
         glm::dmat4 m = item.worldFromObject;
         m[3] += glm::dvec4(glm::dmat3(m) * geometry.offset - origin, 0.0);
         const glm::mat4 rows(glm::transpose(m));
-        records[i] = {rows[0], rows[1], rows[2], item.firstTriangleId - geometry.firstTriangle,
-                      geometry.flags | (item.mirrored ? kItemMirroredBit : 0u), geometry.extraOffset, item.material};
+        records[i] = {rows[0],
+                      rows[1],
+                      rows[2],
+                      item.firstTriangleId - geometry.firstTriangle,
+                      geometry.flags | (item.mirrored ? kItemMirroredBit : 0u),
+                      geometry.extraOffset,
+                      item.material};
     }
     VkBufferMemoryBarrier2 barrier = bufferBarrier(itemBuffer_, access::kStorageRead, access::kTransferWrite);
     recordBarriers(commands, {}, {&barrier, 1});
@@ -145,7 +154,8 @@ void GpuScene::candidates(const glm::dvec3& centre, float radius, std::vector<Ca
     }
 }
 
-void GpuScene::cull(const CullVolume& volume, std::span<const Candidate> candidates, std::vector<DrawRange>& out) const {
+void GpuScene::cull(const CullVolume& volume, std::span<const Candidate> candidates,
+                    std::vector<DrawRange>& out) const {
     for (const Candidate& candidate : candidates) {
         const WorldSphere& sphere = worldClusters_[candidate.worldCluster];
         if (!volume.mayHold(sphere.centre, sphere.radius)) continue;
@@ -156,22 +166,36 @@ void GpuScene::cull(const CullVolume& volume, std::span<const Candidate> candida
     }
 }
 
-TriangleSource GpuScene::triangle(std::uint32_t triangleId) const {
-    const auto after = std::upper_bound(itemsById_.begin(), itemsById_.end(), triangleId,
-                                        [&](std::uint32_t id, std::uint32_t i) { return id < items_[i].firstTriangleId; });
-    if (after == itemsById_.begin()) return {};
+const DrawItem* GpuScene::itemOfTriangle(std::uint32_t triangleId) const {
+    const auto after =
+        std::upper_bound(itemsById_.begin(), itemsById_.end(), triangleId,
+                         [&](std::uint32_t id, std::uint32_t i) { return id < items_[i].firstTriangleId; });
+    if (after == itemsById_.begin()) return nullptr;
     const DrawItem& item = items_[*(after - 1)];
-    const std::uint32_t local = triangleId - item.firstTriangleId;
-    if (local >= item.triangleCount) return {};
-    return {item.instance, item.meshPrimitive, sourceTriangles_[geometries_[item.geometry].firstTriangle + local]};
+    return triangleId - item.firstTriangleId < item.triangleCount ? &item : nullptr;
+}
+
+TriangleSource GpuScene::triangle(std::uint32_t triangleId) const {
+    const DrawItem* item = itemOfTriangle(triangleId);
+    if (item == nullptr) return {};
+    const std::uint32_t stored = geometries_[item->geometry].firstTriangle + triangleId - item->firstTriangleId;
+    return {item->instance, item->meshPrimitive, sourceTriangles_[stored]};
+}
+
+std::uint32_t GpuScene::trianglePosition(std::uint32_t triangleId) const {
+    const DrawItem* item = itemOfTriangle(triangleId);
+    return item != nullptr ? item->firstTriangleId + triangle(triangleId).triangle : kNone;
 }
 
 std::vector<MemoryRow> GpuScene::memoryRows() const {
     std::uint64_t textures = 0;
     for (const GpuImage& image : images_) textures += image.bytes();
-    return {{"scene positions", positions_.bytes()},   {"scene attributes", attributes_.bytes()},
-            {"scene extras", extras_.bytes()},         {"scene indices", indices_.bytes()},
-            {"scene draw items", itemBuffer_.bytes()}, {"scene materials", materialBuffer_.bytes()},
+    return {{"scene positions", positions_.bytes()},
+            {"scene attributes", attributes_.bytes()},
+            {"scene extras", extras_.bytes()},
+            {"scene indices", indices_.bytes()},
+            {"scene draw items", itemBuffer_.bytes()},
+            {"scene materials", materialBuffer_.bytes()},
             {"scene textures", textures}};
 }
 

@@ -2,8 +2,8 @@
 // A scene on the device.
 //
 // Geometry is pulled by the vertex shaders from storage buffers: positions as tight floats, packed attributes, u32
-// indices that count from the scene's first vertex. A *draw item* is one primitive of one instance. Triangles are drawn in
-// clusters, sorted by place; triangle ids count through all draw items, and triangle() leads back to the scene.
+// indices that count from the scene's first vertex. A *draw item* is one primitive of one instance. Triangles are drawn
+// in clusters, sorted by place; triangle ids count through all draw items, and triangle() leads back to the scene.
 //
 // Large worlds: object positions far from their own origin are stored relative to the primitive's centre, and the
 // matrices are computed in double relative to the frame's origin, so nothing large is ever subtracted in a shader.
@@ -62,8 +62,8 @@ public:
 
     /// Moves an instance; counts as a change of the casters. Takes effect with the next recordTransforms().
     void setInstance(std::uint32_t instance, const glm::dmat4& worldFromObject);
-    /// Writes the matrices relative to `origin` if it or an instance changed. Outside of rendering, before any drawing of
-    /// the frame. Frames in flight are safe: the order on the queue keeps old frames' matrices until they are done.
+    /// Writes the matrices relative to `origin` if it or an instance changed. Outside of rendering, before any drawing
+    /// of the frame. Frames in flight are safe: the order on the queue keeps old frames' matrices until they are done.
     void recordTransforms(VkCommandBuffer commands, const glm::dvec3& origin);
     [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
     /// Grows whenever a shadow may have changed.
@@ -82,6 +82,9 @@ public:
     [[nodiscard]] const std::vector<MaterialTraits>& materials() const { return traits_; }
     [[nodiscard]] std::uint32_t triangleCount() const { return triangleCount_; }  ///< of all instances
     [[nodiscard]] TriangleSource triangle(std::uint32_t triangleId) const;
+    /// Position among all instances' triangles in the scene's own order (instances, their primitives, their triangles),
+    /// which the G-buffer's id is not, because clusters are sorted. kNone for an id of the background.
+    [[nodiscard]] std::uint32_t trianglePosition(std::uint32_t triangleId) const;
     [[nodiscard]] std::vector<MemoryRow> memoryRows() const;
 
     /// Set 0: positions, attributes, extras, indices, draw items (storage buffers).
@@ -105,6 +108,7 @@ private:
         glm::dvec3 centre;
         float radius;
     };
+    [[nodiscard]] const DrawItem* itemOfTriangle(std::uint32_t triangleId) const;
     void addGeometry(const Primitive& primitive, Streams& streams);
     void addItems(const Scene& scene, const std::vector<std::uint32_t>& firstGeometryOfMesh);
     void uploadStreams(const Streams& streams, Uploader& uploader);

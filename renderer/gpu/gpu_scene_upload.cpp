@@ -20,7 +20,8 @@ glm::vec2 octahedral(glm::vec3 n) {
     if (!(sum > 0.0f)) return {0.0f, 0.0f};
     n /= sum;
     if (n.z >= 0.0f) return {n.x, n.y};
-    return {(1.0f - std::abs(n.y)) * (n.x >= 0.0f ? 1.0f : -1.0f), (1.0f - std::abs(n.x)) * (n.y >= 0.0f ? 1.0f : -1.0f)};
+    return {(1.0f - std::abs(n.y)) * (n.x >= 0.0f ? 1.0f : -1.0f),
+            (1.0f - std::abs(n.x)) * (n.y >= 0.0f ? 1.0f : -1.0f)};
 }
 
 std::uint32_t packTangent(const glm::vec4& tangent) {
@@ -42,7 +43,8 @@ void GpuScene::addGeometry(const Primitive& primitive, Streams& streams) {
     geometry.triangleCount = static_cast<std::uint32_t>(primitive.indices.size() / 3);
     Bounds bounds;
     for (const glm::vec3& p : primitive.positions) bounds.add(p);
-    if (!bounds.empty() && glm::length(bounds.centre()) > kFarFromOriginMetres) geometry.offset = glm::dvec3(bounds.centre());
+    if (!bounds.empty() && glm::length(bounds.centre()) > kFarFromOriginMetres)
+        geometry.offset = glm::dvec3(bounds.centre());
 
     std::vector<glm::vec3> stored(primitive.positions.size());
     std::transform(primitive.positions.begin(), primitive.positions.end(), stored.begin(),
@@ -51,18 +53,21 @@ void GpuScene::addGeometry(const Primitive& primitive, Streams& streams) {
 
     const bool hasNormals = !primitive.normals.empty(), hasTangents = hasNormals && !primitive.tangents.empty();
     const bool hasExtras = !primitive.texcoords[1].empty() || !primitive.colours.empty();
-    geometry.flags = (hasNormals ? kItemNormalsBit : 0u) | (hasTangents ? kItemTangentsBit : 0u) | (hasExtras ? kItemExtrasBit : 0u);
+    geometry.flags =
+        (hasNormals ? kItemNormalsBit : 0u) | (hasTangents ? kItemTangentsBit : 0u) | (hasExtras ? kItemExtrasBit : 0u);
     geometry.extraOffset = static_cast<std::uint32_t>(streams.extras.size() / kExtraWords) - firstVertex;
     for (std::size_t v = 0; v < stored.size(); ++v) {
         const glm::vec2 uv = primitive.texcoords[0].empty() ? glm::vec2(0.0f) : primitive.texcoords[0][v];
-        streams.attributes.insert(streams.attributes.end(), {hasNormals ? glm::packSnorm2x16(octahedral(primitive.normals[v])) : 0u,
-                                                             hasTangents ? packTangent(primitive.tangents[v]) : 0u,
-                                                             glm::floatBitsToUint(uv.x), glm::floatBitsToUint(uv.y)});
+        streams.attributes.insert(streams.attributes.end(),
+                                  {hasNormals ? glm::packSnorm2x16(octahedral(primitive.normals[v])) : 0u,
+                                   hasTangents ? packTangent(primitive.tangents[v]) : 0u, glm::floatBitsToUint(uv.x),
+                                   glm::floatBitsToUint(uv.y)});
         if (!hasExtras) continue;
         const glm::vec2 uv1 = primitive.texcoords[1].empty() ? uv : primitive.texcoords[1][v];
         const glm::vec4 colour = primitive.colours.empty() ? glm::vec4(1.0f) : primitive.colours[v];
-        streams.extras.insert(streams.extras.end(), {glm::floatBitsToUint(uv1.x), glm::floatBitsToUint(uv1.y),
-                                                     glm::packHalf2x16({colour.x, colour.y}), glm::packHalf2x16({colour.z, colour.w})});
+        streams.extras.insert(streams.extras.end(),
+                              {glm::floatBitsToUint(uv1.x), glm::floatBitsToUint(uv1.y),
+                               glm::packHalf2x16({colour.x, colour.y}), glm::packHalf2x16({colour.z, colour.w})});
     }
 
     const ClusteredTriangles split = makeClusters(stored, primitive.indices);
@@ -74,7 +79,8 @@ void GpuScene::addGeometry(const Primitive& primitive, Streams& streams) {
     }
     for (const std::uint32_t triangle : split.order) {
         sourceTriangles_.push_back(triangle);
-        for (std::uint32_t c = 0; c < 3; ++c) streams.indices.push_back(firstVertex + primitive.indices[3 * triangle + c]);
+        for (std::uint32_t c = 0; c < 3; ++c)
+            streams.indices.push_back(firstVertex + primitive.indices[3 * triangle + c]);
     }
     geometries_.push_back(geometry);
 }
@@ -83,11 +89,13 @@ void GpuScene::uploadStreams(const Streams& streams, Uploader& uploader) {
     const VkDeviceSize limit = device_.limits().maxStorageBufferRange;
     auto make = [&](const char* name, std::size_t bytes, VkBufferUsageFlags more) {
         if (bytes > limit) {
-            throw GpuError(std::string("The ") + name + " need " + std::to_string(bytes >> 20) + " MiB in one buffer, but '" +
-                           device_.info().name + "' allows " + std::to_string(limit >> 20) + " MiB; use a smaller scene.");
+            throw GpuError(std::string("The ") + name + " need " + std::to_string(bytes >> 20) +
+                           " MiB in one buffer, but '" + device_.info().name + "' allows " +
+                           std::to_string(limit >> 20) + " MiB; use a smaller scene.");
         }
         return Buffer(device_, name, bytes,
-                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | more);
+                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT | more);
     };
     auto upload = [&](const char* name, const auto& values, VkBufferUsageFlags more) {
         Buffer buffer = make(name, values.size() * sizeof(values[0]), more);
@@ -101,7 +109,8 @@ void GpuScene::uploadStreams(const Streams& streams, Uploader& uploader) {
     itemBuffer_ = make("scene draw items", items_.size() * sizeof(GpuDrawItem), 0);
 
     const std::vector<VkDescriptorType> types(5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
-    sceneSetLayout_ = makeSetLayout(device_, types, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT);
+    sceneSetLayout_ = makeSetLayout(
+        device_, types, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT);
     scenePool_ = makeDescriptorPool(device_, 1, types);
     sceneSet_ = allocateSet(device_, scenePool_, sceneSetLayout_);
     const Buffer* buffers[] = {&positions_, &attributes_, &extras_, &indices_, &itemBuffer_};

@@ -11,25 +11,38 @@ namespace {
 
 const char* sentenceOf(VkResult result) {
     switch (result) {
-        case VK_ERROR_OUT_OF_HOST_MEMORY: return "the host is out of memory";
+        case VK_ERROR_OUT_OF_HOST_MEMORY:
+            return "the host is out of memory";
         case VK_ERROR_OUT_OF_DEVICE_MEMORY:
             return "the device is out of memory; use a smaller resolution, shadow atlas or scene";
-        case VK_ERROR_DEVICE_LOST: return "the device was lost (a crash or time-out of the driver); start again";
-        case VK_ERROR_INITIALIZATION_FAILED: return "the driver could not be initialised";
-        case VK_ERROR_LAYER_NOT_PRESENT: return "a layer is not installed";
-        case VK_ERROR_EXTENSION_NOT_PRESENT: return "an extension is not present";
-        case VK_ERROR_FEATURE_NOT_PRESENT: return "a feature is not present";
-        case VK_ERROR_INCOMPATIBLE_DRIVER: return "no compatible Vulkan driver was found";
-        case VK_ERROR_TOO_MANY_OBJECTS: return "too many objects exist";
-        case VK_ERROR_FORMAT_NOT_SUPPORTED: return "a format is not supported";
+        case VK_ERROR_DEVICE_LOST:
+            return "the device was lost (a crash or time-out of the driver); start again";
+        case VK_ERROR_INITIALIZATION_FAILED:
+            return "the driver could not be initialised";
+        case VK_ERROR_LAYER_NOT_PRESENT:
+            return "a layer is not installed";
+        case VK_ERROR_EXTENSION_NOT_PRESENT:
+            return "an extension is not present";
+        case VK_ERROR_FEATURE_NOT_PRESENT:
+            return "a feature is not present";
+        case VK_ERROR_INCOMPATIBLE_DRIVER:
+            return "no compatible Vulkan driver was found";
+        case VK_ERROR_TOO_MANY_OBJECTS:
+            return "too many objects exist";
+        case VK_ERROR_FORMAT_NOT_SUPPORTED:
+            return "a format is not supported";
         case VK_ERROR_FRAGMENTED_POOL:
-        case VK_ERROR_OUT_OF_POOL_MEMORY: return "a descriptor pool is exhausted";
-        case VK_TIMEOUT: return "the device did not finish in time";
-        default: return nullptr;
+        case VK_ERROR_OUT_OF_POOL_MEMORY:
+            return "a descriptor pool is exhausted";
+        case VK_TIMEOUT:
+            return "the device did not finish in time";
+        default:
+            return nullptr;
     }
 }
 
-VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT,
+VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                         VkDebugUtilsMessageTypeFlagsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
     if (severity >= VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT && data->pMessage != nullptr) {
         static_cast<MessageLog*>(user)->add(data->pMessage);
@@ -51,7 +64,8 @@ bool hasLayer(const char* name) {
     check(vkEnumerateInstanceLayerProperties(&count, nullptr), "listing layers");
     std::vector<VkLayerProperties> layers(count);
     check(vkEnumerateInstanceLayerProperties(&count, layers.data()), "listing layers");
-    return std::any_of(layers.begin(), layers.end(), [&](const auto& l) { return std::strcmp(l.layerName, name) == 0; });
+    return std::any_of(layers.begin(), layers.end(),
+                       [&](const auto& l) { return std::strcmp(l.layerName, name) == 0; });
 }
 
 bool hasInstanceExtension(const char* name) {
@@ -59,23 +73,35 @@ bool hasInstanceExtension(const char* name) {
     check(vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr), "listing instance extensions");
     std::vector<VkExtensionProperties> found(count);
     check(vkEnumerateInstanceExtensionProperties(nullptr, &count, found.data()), "listing instance extensions");
-    return std::any_of(found.begin(), found.end(), [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+    return std::any_of(found.begin(), found.end(),
+                       [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
 std::string lowered(std::string_view text) {
     std::string out(text);
-    std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(out.begin(), out.end(), out.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return out;
 }
 
 // Prefers discrete over integrated over virtual over CPU, and lavapipe (compiled, threaded) over SwiftShader.
 void rankDevice(DeviceInfo& info) {
     switch (info.properties.deviceType) {
-        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: info.typeName = "discrete GPU", info.rank = 50; break;
-        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: info.typeName = "integrated GPU", info.rank = 40; break;
-        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: info.typeName = "virtual GPU", info.rank = 30; break;
-        case VK_PHYSICAL_DEVICE_TYPE_CPU: info.typeName = "CPU", info.rank = 20; break;
-        default: info.typeName = "other", info.rank = 10; break;
+        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+            info.typeName = "discrete GPU", info.rank = 50;
+            break;
+        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+            info.typeName = "integrated GPU", info.rank = 40;
+            break;
+        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+            info.typeName = "virtual GPU", info.rank = 30;
+            break;
+        case VK_PHYSICAL_DEVICE_TYPE_CPU:
+            info.typeName = "CPU", info.rank = 20;
+            break;
+        default:
+            info.typeName = "other", info.rank = 10;
+            break;
     }
     if (lowered(info.name).find("swiftshader") != std::string::npos) info.rank -= 1;
 }
@@ -262,7 +288,8 @@ DeviceInfo VulkanInstance::chooseDevice(std::string_view wanted) const {
         if (best == nullptr) throw GpuError("No Vulkan device is suitable: " + devices.front().missing);
         return *best;
     }
-    const bool isIndex = std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+    const bool isIndex =
+        std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
     if (isIndex && wanted.size() < 6) {
         const std::size_t index = std::stoul(std::string(wanted));
         if (index < devices.size()) best = &devices[index];

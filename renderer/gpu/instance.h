@@ -26,8 +26,8 @@ private:
 };
 
 struct InstanceDesc {
-    bool validation = false;  ///< the Khronos layer with synchronization validation; an error if it is not installed
-    bool debugLabels = true;  ///< names and labels for frame captures, where the loader offers VK_EXT_debug_utils
+    bool validation = false;    ///< the Khronos layer with synchronization validation; an error if it is not installed
+    bool debugLabels = true;    ///< names and labels for frame captures, where the loader offers VK_EXT_debug_utils
     bool printMessages = true;  ///< validation messages also go to stderr
     /// Instance extensions of a window system, all of which must exist.
     std::vector<const char*> extensions;
@@ -63,8 +63,8 @@ public:
     /// Every physical device in the loader's order, suitable or not.
     [[nodiscard]] std::vector<DeviceInfo> listDevices() const;
 
-    /// Empty: the best suitable device. Else an index into listDevices() or a part of a name in any case. Throws GpuError
-    /// with a sentence that lists the known names if nothing matches or the match lacks something.
+    /// Empty: the best suitable device. Else an index into listDevices() or a part of a name in any case. Throws
+    /// GpuError with a sentence that lists the known names if nothing matches or the match lacks something.
     [[nodiscard]] DeviceInfo chooseDevice(std::string_view wanted = {}) const;
 
 private:

@@ -9,8 +9,9 @@ namespace gnomon::renderer {
 namespace {
 
 constexpr VkDescriptorType kMaterialTypes[] = {
-    VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER};
+    VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+    VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER};
 // A multiple of every minUniformBufferOffsetAlignment (at most 256).
 constexpr VkDeviceSize kMaterialStride = 256;
 constexpr std::uint32_t kWhiteImage = 0;  // stands in where there is no texture
@@ -87,16 +88,19 @@ void GpuScene::createMaterials(const Scene& scene, Uploader& uploader) {
         const GpuMaterial packed = packMaterial(scene.materials[m]);
         std::copy_n(reinterpret_cast<const std::byte*>(&packed), sizeof(packed), records.data() + m * kMaterialStride);
     }
-    materialBuffer_ = Buffer(device_, "scene materials", records.size(), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    materialBuffer_ = Buffer(device_, "scene materials", records.size(),
+                             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
     if (!records.empty()) uploader.buffer(materialBuffer_, records);
-    materialSetLayout_ = makeSetLayout(device_, kMaterialTypes, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT);
+    materialSetLayout_ =
+        makeSetLayout(device_, kMaterialTypes, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT);
     materialPool_ = makeDescriptorPool(device_, std::max(count, 1u), kMaterialTypes);
     for (std::uint32_t m = 0; m < count; ++m) {
         const Material& material = scene.materials[m];
         const VkDescriptorSet set = allocateSet(device_, materialPool_, materialSetLayout_);
-        writeBuffer(device_, set, 0, kMaterialTypes[0], materialBuffer_.handle(), m * kMaterialStride, sizeof(GpuMaterial));
-        const TextureUse* uses[] = {&material.baseColourTexture, &material.metallicRoughnessTexture, &material.normalTexture,
-                                    &material.emissiveTexture};
+        writeBuffer(device_, set, 0, kMaterialTypes[0], materialBuffer_.handle(), m * kMaterialStride,
+                    sizeof(GpuMaterial));
+        const TextureUse* uses[] = {&material.baseColourTexture, &material.metallicRoughnessTexture,
+                                    &material.normalTexture, &material.emissiveTexture};
         const bool srgb[] = {true, false, false, true};
         for (std::uint32_t t = 0; t < 4; ++t) {
             const std::uint32_t image = imageOf(*uses[t], srgb[t], uploader, scene);

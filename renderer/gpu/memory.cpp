@@ -38,7 +38,9 @@ void Allocation::release() {
     pool_ = nullptr;
 }
 
-VkDeviceMemory Allocation::memory() const { return block_ != nullptr ? block_->memory : VK_NULL_HANDLE; }
+VkDeviceMemory Allocation::memory() const {
+    return block_ != nullptr ? block_->memory : VK_NULL_HANDLE;
+}
 
 void* Allocation::mapped() const {
     return block_ != nullptr && block_->mapped != nullptr ? static_cast<char*>(block_->mapped) + offset_ : nullptr;
@@ -59,7 +61,8 @@ std::uint64_t MemoryPool::bytesReserved() const {
 }
 
 std::uint32_t MemoryPool::memoryType(std::uint32_t allowed, MemoryUse use) const {
-    constexpr VkMemoryPropertyFlags kMapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    constexpr VkMemoryPropertyFlags kMapped =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     // Best first; the last entry is what is needed at least.
     std::vector<VkMemoryPropertyFlags> wishes;
     if (use == MemoryUse::DeviceLocal) wishes = {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0};
@@ -97,12 +100,14 @@ Allocation MemoryPool::allocate(const VkMemoryRequirements& requirements, Memory
     auto takeFrom = [&](MemoryBlock& block, Allocation& out) {
         for (std::size_t r = 0; r < block.freeRanges.size(); ++r) {
             const MemoryBlock::Range range = block.freeRanges[r];
-            const VkDeviceSize begin = (range.offset + requirements.alignment - 1) / requirements.alignment * requirements.alignment;
+            const VkDeviceSize begin =
+                (range.offset + requirements.alignment - 1) / requirements.alignment * requirements.alignment;
             if (begin + requirements.size > range.offset + range.size) continue;
             const VkDeviceSize end = begin + requirements.size;
             block.freeRanges.erase(block.freeRanges.begin() + static_cast<std::ptrdiff_t>(r));
             auto at = block.freeRanges.begin() + static_cast<std::ptrdiff_t>(r);
-            if (end < range.offset + range.size) at = block.freeRanges.insert(at, {end, range.offset + range.size - end});
+            if (end < range.offset + range.size)
+                at = block.freeRanges.insert(at, {end, range.offset + range.size - end});
             if (begin > range.offset) block.freeRanges.insert(at, {range.offset, begin - range.offset});
             out.pool_ = this;
             out.block_ = &block;
@@ -116,7 +121,8 @@ Allocation MemoryPool::allocate(const VkMemoryRequirements& requirements, Memory
     const bool dedicated = requirements.size > kBlockBytes / 2;
     if (!dedicated) {
         for (const auto& block : blocks_) {
-            const bool fits = block->type == type && block->use == use && block->forImage == forImage && !block->dedicated;
+            const bool fits =
+                block->type == type && block->use == use && block->forImage == forImage && !block->dedicated;
             if (fits && takeFrom(*block, out)) return out;
         }
     }
@@ -131,7 +137,8 @@ void MemoryPool::free(MemoryBlock& block, VkDeviceSize offset, VkDeviceSize size
         return;
     }
     auto& ranges = block.freeRanges;
-    auto next = std::lower_bound(ranges.begin(), ranges.end(), offset, [](const auto& r, VkDeviceSize o) { return r.offset < o; });
+    auto next = std::lower_bound(ranges.begin(), ranges.end(), offset,
+                                 [](const auto& r, VkDeviceSize o) { return r.offset < o; });
     next = ranges.insert(next, {offset, size});
     if (next + 1 != ranges.end() && next->offset + next->size == (next + 1)->offset) {
         next->size += (next + 1)->size;

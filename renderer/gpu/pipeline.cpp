@@ -7,7 +7,8 @@ namespace {
 // Lives for the length of a pipeline's creation.
 struct ShaderModule {
     ShaderModule(const Device& d, std::span<const std::uint32_t> spirv) : device(d) {
-        VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0, spirv.size_bytes(), spirv.data()};
+        VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0, spirv.size_bytes(),
+                                      spirv.data()};
         check(vkCreateShaderModule(device.handle(), &info, nullptr, &handle), "creating a shader");
     }
     ~ShaderModule() { vkDestroyShaderModule(device.handle(), handle, nullptr); }
@@ -54,7 +55,8 @@ PipelineLayout makePipelineLayout(const Device& device, std::span<const VkDescri
     return {device.handle(), layout};
 }
 
-DescriptorPool makeDescriptorPool(const Device& device, std::uint32_t sets, std::span<const VkDescriptorType> typesPerSet) {
+DescriptorPool makeDescriptorPool(const Device& device, std::uint32_t sets,
+                                  std::span<const VkDescriptorType> typesPerSet) {
     std::vector<VkDescriptorPoolSize> sizes;
     for (const VkDescriptorType type : typesPerSet) sizes.push_back({type, sets});
     VkDescriptorPoolCreateInfo info{};
@@ -74,17 +76,19 @@ VkDescriptorSet allocateSet(const Device& device, VkDescriptorPool pool, VkDescr
     return set;
 }
 
-void writeBuffer(const Device& device, VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type, VkBuffer buffer,
-                 VkDeviceSize offset, VkDeviceSize bytes) {
+void writeBuffer(const Device& device, VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type,
+                 VkBuffer buffer, VkDeviceSize offset, VkDeviceSize bytes) {
     const VkDescriptorBufferInfo info{buffer, offset, bytes};
-    VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, set, binding, 0, 1, type, nullptr, &info, nullptr};
+    VkWriteDescriptorSet write{
+        VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, set, binding, 0, 1, type, nullptr, &info, nullptr};
     vkUpdateDescriptorSets(device.handle(), 1, &write, 0, nullptr);
 }
 
-void writeImage(const Device& device, VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type, VkImageView view,
-                VkSampler sampler, VkImageLayout layout) {
+void writeImage(const Device& device, VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type,
+                VkImageView view, VkSampler sampler, VkImageLayout layout) {
     const VkDescriptorImageInfo info{sampler, view, layout};
-    VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, set, binding, 0, 1, type, &info, nullptr, nullptr};
+    VkWriteDescriptorSet write{
+        VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, set, binding, 0, 1, type, &info, nullptr, nullptr};
     vkUpdateDescriptorSets(device.handle(), 1, &write, 0, nullptr);
 }
 
@@ -150,7 +154,8 @@ Pipeline makeGraphicsPipeline(const Device& device, const GraphicsPipelineDesc& 
     info.pDynamicState = &dynamic;
     info.layout = desc.layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
-    check(vkCreateGraphicsPipelines(device.handle(), device.pipelineCache(), 1, &info, nullptr, &pipeline), "creating a graphics pipeline");
+    check(vkCreateGraphicsPipelines(device.handle(), device.pipelineCache(), 1, &info, nullptr, &pipeline),
+          "creating a graphics pipeline");
     return {device.handle(), pipeline};
 }
 
@@ -159,8 +164,8 @@ Pipeline makeComputePipeline(const Device& device, std::span<const std::uint32_t
     const ShaderModule module(device, spirv);
     std::vector<VkSpecializationMapEntry> entries;
     for (std::uint32_t i = 0; i < specialization.size(); ++i) entries.push_back({i, i * 4, 4});
-    const VkSpecializationInfo values{static_cast<std::uint32_t>(entries.size()), entries.data(), specialization.size_bytes(),
-                                      specialization.data()};
+    const VkSpecializationInfo values{static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                      specialization.size_bytes(), specialization.data()};
     VkPipelineShaderStageRequiredSubgroupSizeCreateInfo size{};
     size.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO;
     size.requiredSubgroupSize = requiredSubgroupSize;
@@ -174,7 +179,8 @@ Pipeline makeComputePipeline(const Device& device, std::span<const std::uint32_t
     }
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
-    check(vkCreateComputePipelines(device.handle(), device.pipelineCache(), 1, &info, nullptr, &pipeline), "creating a compute pipeline");
+    check(vkCreateComputePipelines(device.handle(), device.pipelineCache(), 1, &info, nullptr, &pipeline),
+          "creating a compute pipeline");
     return {device.handle(), pipeline};
 }
 

@@ -35,10 +35,18 @@ private:
 };
 
 namespace detail {
-inline void destroySetLayout(VkDevice d, VkDescriptorSetLayout h) { vkDestroyDescriptorSetLayout(d, h, nullptr); }
-inline void destroyPipelineLayout(VkDevice d, VkPipelineLayout h) { vkDestroyPipelineLayout(d, h, nullptr); }
-inline void destroyPipeline(VkDevice d, VkPipeline h) { vkDestroyPipeline(d, h, nullptr); }
-inline void destroyDescriptorPool(VkDevice d, VkDescriptorPool h) { vkDestroyDescriptorPool(d, h, nullptr); }
+inline void destroySetLayout(VkDevice d, VkDescriptorSetLayout h) {
+    vkDestroyDescriptorSetLayout(d, h, nullptr);
+}
+inline void destroyPipelineLayout(VkDevice d, VkPipelineLayout h) {
+    vkDestroyPipelineLayout(d, h, nullptr);
+}
+inline void destroyPipeline(VkDevice d, VkPipeline h) {
+    vkDestroyPipeline(d, h, nullptr);
+}
+inline void destroyDescriptorPool(VkDevice d, VkDescriptorPool h) {
+    vkDestroyDescriptorPool(d, h, nullptr);
+}
 }  // namespace detail
 using SetLayout = Owned<VkDescriptorSetLayout, detail::destroySetLayout>;
 using PipelineLayout = Owned<VkPipelineLayout, detail::destroyPipelineLayout>;
@@ -50,12 +58,13 @@ SetLayout makeSetLayout(const Device& device, std::span<const VkDescriptorType> 
 PipelineLayout makePipelineLayout(const Device& device, std::span<const VkDescriptorSetLayout> sets,
                                   VkShaderStageFlags pushStages = 0, std::uint32_t pushBytes = 0);
 /// Room for `sets` sets, each with the given descriptors.
-DescriptorPool makeDescriptorPool(const Device& device, std::uint32_t sets, std::span<const VkDescriptorType> typesPerSet);
+DescriptorPool makeDescriptorPool(const Device& device, std::uint32_t sets,
+                                  std::span<const VkDescriptorType> typesPerSet);
 VkDescriptorSet allocateSet(const Device& device, VkDescriptorPool pool, VkDescriptorSetLayout layout);
-void writeBuffer(const Device& device, VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type, VkBuffer buffer,
-                 VkDeviceSize offset = 0, VkDeviceSize bytes = VK_WHOLE_SIZE);
-void writeImage(const Device& device, VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type, VkImageView view,
-                VkSampler sampler, VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+void writeBuffer(const Device& device, VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type,
+                 VkBuffer buffer, VkDeviceSize offset = 0, VkDeviceSize bytes = VK_WHOLE_SIZE);
+void writeImage(const Device& device, VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type,
+                VkImageView view, VkSampler sampler, VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 
 struct GraphicsPipelineDesc {
     std::span<const std::uint32_t> vertexSpirv, fragmentSpirv;  ///< no fragment shader: depth only
@@ -74,6 +83,7 @@ Pipeline makeGraphicsPipeline(const Device& device, const GraphicsPipelineDesc& 
 
 /// `specialization`: values of constants 0, 1, 2 ... A required subgroup size of 0 leaves the choice to the device.
 Pipeline makeComputePipeline(const Device& device, std::span<const std::uint32_t> spirv, VkPipelineLayout layout,
-                             std::span<const std::uint32_t> specialization = {}, std::uint32_t requiredSubgroupSize = 0);
+                             std::span<const std::uint32_t> specialization = {},
+                             std::uint32_t requiredSubgroupSize = 0);
 
 }  // namespace gnomon::renderer

@@ -7,7 +7,8 @@
 
 namespace gnomon::renderer {
 
-Buffer::Buffer(const Device& device, const std::string& name, VkDeviceSize bytes, VkBufferUsageFlags usage, MemoryUse use)
+Buffer::Buffer(const Device& device, const std::string& name, VkDeviceSize bytes, VkBufferUsageFlags usage,
+               MemoryUse use)
     : device_(&device), bytes_(std::max<VkDeviceSize>(bytes, 16)) {
     VkBufferCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
@@ -18,7 +19,8 @@ Buffer::Buffer(const Device& device, const std::string& name, VkDeviceSize bytes
         VkMemoryRequirements requirements{};
         vkGetBufferMemoryRequirements(device.handle(), buffer_, &requirements);
         allocation_ = device.memory().allocate(requirements, use, false);
-        check(vkBindBufferMemory(device.handle(), buffer_, allocation_.memory(), allocation_.offset()), "binding a buffer");
+        check(vkBindBufferMemory(device.handle(), buffer_, allocation_.memory(), allocation_.offset()),
+              "binding a buffer");
     } catch (...) {
         destroy();
         throw;
@@ -46,8 +48,10 @@ VkImageAspectFlags aspectOf(VkFormat format) {
     switch (format) {
         case VK_FORMAT_D32_SFLOAT:
         case VK_FORMAT_D16_UNORM:
-        case VK_FORMAT_X8_D24_UNORM_PACK32: return VK_IMAGE_ASPECT_DEPTH_BIT;
-        default: return VK_IMAGE_ASPECT_COLOR_BIT;
+        case VK_FORMAT_X8_D24_UNORM_PACK32:
+            return VK_IMAGE_ASPECT_DEPTH_BIT;
+        default:
+            return VK_IMAGE_ASPECT_COLOR_BIT;
     }
 }
 
@@ -57,9 +61,11 @@ std::uint32_t mipCountOf(std::uint32_t width, std::uint32_t height) {
 
 std::uint32_t bytesPerTexel(VkFormat format) {
     switch (format) {
-        case VK_FORMAT_R8_UNORM: return 1;
+        case VK_FORMAT_R8_UNORM:
+            return 1;
         case VK_FORMAT_R8G8_UINT:
-        case VK_FORMAT_D16_UNORM: return 2;
+        case VK_FORMAT_D16_UNORM:
+            return 2;
         case VK_FORMAT_R8G8B8A8_UNORM:
         case VK_FORMAT_R8G8B8A8_SRGB:
         case VK_FORMAT_B8G8R8A8_UNORM:
@@ -68,19 +74,24 @@ std::uint32_t bytesPerTexel(VkFormat format) {
         case VK_FORMAT_R16G16_UINT:
         case VK_FORMAT_R32_UINT:
         case VK_FORMAT_R32_SFLOAT:
-        case VK_FORMAT_D32_SFLOAT: return 4;
+        case VK_FORMAT_D32_SFLOAT:
+            return 4;
         case VK_FORMAT_R16G16B16A16_SFLOAT:
-        case VK_FORMAT_R32G32_SFLOAT: return 8;
-        case VK_FORMAT_R32G32B32A32_SFLOAT: return 16;
-        default: throw GpuError("The renderer does not know the size of a texel of format " + std::to_string(format) + ".");
+        case VK_FORMAT_R32G32_SFLOAT:
+            return 8;
+        case VK_FORMAT_R32G32B32A32_SFLOAT:
+            return 16;
+        default:
+            throw GpuError("The renderer does not know the size of a texel of format " + std::to_string(format) + ".");
     }
 }
 
 GpuImage::GpuImage(const Device& device, const ImageDesc& desc) : device_(&device), desc_(desc) {
     const std::uint32_t largest = device.limits().maxImageDimension2D;
     if (desc.width == 0 || desc.height == 0 || desc.width > largest || desc.height > largest) {
-        throw GpuError("The image '" + desc.name + "' of " + std::to_string(desc.width) + "x" + std::to_string(desc.height) +
-                       " is beyond the device's limit of " + std::to_string(largest) + "; choose a smaller size.");
+        throw GpuError("The image '" + desc.name + "' of " + std::to_string(desc.width) + "x" +
+                       std::to_string(desc.height) + " is beyond the device's limit of " + std::to_string(largest) +
+                       "; choose a smaller size.");
     }
     VkImageCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
@@ -93,8 +104,8 @@ GpuImage::GpuImage(const Device& device, const ImageDesc& desc) : device_(&devic
     info.tiling = VK_IMAGE_TILING_OPTIMAL;
     info.usage = desc.usage;
     VkImageFormatProperties properties{};
-    if (vkGetPhysicalDeviceImageFormatProperties(device.physical(), info.format, info.imageType, info.tiling, info.usage, 0,
-                                                 &properties) != VK_SUCCESS) {
+    if (vkGetPhysicalDeviceImageFormatProperties(device.physical(), info.format, info.imageType, info.tiling,
+                                                 info.usage, 0, &properties) != VK_SUCCESS) {
         throw GpuError("The device does not support the format of the image '" + desc.name + "'.");
     }
     check(vkCreateImage(device.handle(), &info, nullptr, &image_), "creating an image");
@@ -102,11 +113,13 @@ GpuImage::GpuImage(const Device& device, const ImageDesc& desc) : device_(&devic
         VkMemoryRequirements requirements{};
         vkGetImageMemoryRequirements(device.handle(), image_, &requirements);
         allocation_ = device.memory().allocate(requirements, MemoryUse::DeviceLocal, true);
-        check(vkBindImageMemory(device.handle(), image_, allocation_.memory(), allocation_.offset()), "binding an image");
+        check(vkBindImageMemory(device.handle(), image_, allocation_.memory(), allocation_.offset()),
+              "binding an image");
         const bool isArray = desc.arrayView || desc.layers > 1;
         view_ = makeView(isArray ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D, 0, desc.layers);
         if (isArray) {
-            for (std::uint32_t l = 0; l < desc.layers; ++l) layerViews_.push_back(makeView(VK_IMAGE_VIEW_TYPE_2D, l, 1));
+            for (std::uint32_t l = 0; l < desc.layers; ++l)
+                layerViews_.push_back(makeView(VK_IMAGE_VIEW_TYPE_2D, l, 1));
         }
     } catch (...) {
         destroy();

@@ -119,7 +119,8 @@ inline constexpr Access kStorageRead{VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_
 }  // namespace access
 
 /// All mips and layers of an image: a barrier with a layout change.
-VkImageMemoryBarrier2 imageBarrier(const GpuImage& image, VkImageLayout from, Access before, VkImageLayout to, Access after);
+VkImageMemoryBarrier2 imageBarrier(const GpuImage& image, VkImageLayout from, Access before, VkImageLayout to,
+                                   Access after);
 VkBufferMemoryBarrier2 bufferBarrier(const Buffer& buffer, Access before, Access after);
 void recordBarriers(VkCommandBuffer commands, std::span<const VkImageMemoryBarrier2> images,
                     std::span<const VkBufferMemoryBarrier2> buffers = {});
@@ -146,10 +147,11 @@ private:
 
 /// Bytes of one mip and layer, rows from the top without padding. The image needs TRANSFER_SRC and is returned to
 /// `layout`. Waits for the device.
-std::vector<std::uint8_t> readImage(const Device& device, const GpuImage& image, VkImageLayout layout, std::uint32_t layer = 0,
-                                    std::uint32_t mip = 0);
+std::vector<std::uint8_t> readImage(const Device& device, const GpuImage& image, VkImageLayout layout,
+                                    std::uint32_t layer = 0, std::uint32_t mip = 0);
 /// The buffer needs TRANSFER_SRC. Waits for the device.
-std::vector<std::uint8_t> readBuffer(const Device& device, VkBuffer buffer, VkDeviceSize bytes, VkDeviceSize offset = 0);
+std::vector<std::uint8_t> readBuffer(const Device& device, VkBuffer buffer, VkDeviceSize bytes,
+                                     VkDeviceSize offset = 0);
 
 /// Bytes of a texel, for the formats that the renderer uses; throws GpuError for others.
 [[nodiscard]] std::uint32_t bytesPerTexel(VkFormat format);

@@ -32,7 +32,7 @@ struct GpuDrawItem {
     vec4 row0, row1, row2;
     GNOMON_UINT triangleIdOffset;  // triangle id = scene-wide triangle + this, modulo 2^32
     GNOMON_UINT flags;
-    GNOMON_UINT extraOffset;       // record of the extras = vertex + this, modulo 2^32
+    GNOMON_UINT extraOffset;  // record of the extras = vertex + this, modulo 2^32
     GNOMON_UINT material;
 };
 

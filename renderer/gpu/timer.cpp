@@ -30,14 +30,16 @@ std::uint32_t GpuTimer::begin(VkCommandBuffer commands, const std::string& name)
     if (scope >= maxScopes_) return maxScopes_;
     frame.names.push_back(name);
     if (pool_ != VK_NULL_HANDLE) {
-        vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, (current_ * maxScopes_ + scope) * 2);
+        vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_,
+                             (current_ * maxScopes_ + scope) * 2);
     }
     return scope;
 }
 
 void GpuTimer::end(VkCommandBuffer commands, std::uint32_t scope) {
     if (scope < maxScopes_ && pool_ != VK_NULL_HANDLE) {
-        vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, (current_ * maxScopes_ + scope) * 2 + 1);
+        vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_,
+                             (current_ * maxScopes_ + scope) * 2 + 1);
     }
     device_.endLabel(commands);
 }
@@ -47,9 +49,9 @@ std::vector<GpuTime> GpuTimer::times(std::uint64_t frameNumber) const {
     const Frame& frame = frames_[slot];
     if (pool_ == VK_NULL_HANDLE || frame.number != frameNumber || frame.names.empty()) return {};
     std::vector<std::uint64_t> stamps(frame.names.size() * 2);
-    const VkResult result =
-        vkGetQueryPoolResults(device_.handle(), pool_, slot * maxScopes_ * 2, static_cast<std::uint32_t>(stamps.size()),
-                              stamps.size() * sizeof(std::uint64_t), stamps.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
+    const VkResult result = vkGetQueryPoolResults(
+        device_.handle(), pool_, slot * maxScopes_ * 2, static_cast<std::uint32_t>(stamps.size()),
+        stamps.size() * sizeof(std::uint64_t), stamps.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
     if (result != VK_SUCCESS) return {};
     std::vector<GpuTime> rows;
     for (std::size_t s = 0; s < frame.names.size(); ++s) {

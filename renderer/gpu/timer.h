@@ -22,7 +22,8 @@ public:
     GpuTimer(const GpuTimer&) = delete;
     GpuTimer& operator=(const GpuTimer&) = delete;
 
-    /// First thing in a frame's first command buffer, outside of rendering. The frame that is reused must have finished.
+    /// First thing in a frame's first command buffer, outside of rendering. The frame that is reused must have
+    /// finished.
     void beginFrame(VkCommandBuffer commands, std::uint64_t frameNumber);
     /// Scopes may nest; each also makes a debug label. Outside of rendering or wholly within one.
     std::uint32_t begin(VkCommandBuffer commands, const std::string& name);

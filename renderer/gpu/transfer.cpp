@@ -10,7 +10,8 @@ namespace {
 constexpr VkDeviceSize kPendingLimitBytes = VkDeviceSize{64} << 20;
 }
 
-VkImageMemoryBarrier2 imageBarrier(const GpuImage& image, VkImageLayout from, Access before, VkImageLayout to, Access after) {
+VkImageMemoryBarrier2 imageBarrier(const GpuImage& image, VkImageLayout from, Access before, VkImageLayout to,
+                                   Access after) {
     VkImageMemoryBarrier2 barrier{};
     barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
     barrier.srcStageMask = before.stage;
@@ -21,7 +22,8 @@ VkImageMemoryBarrier2 imageBarrier(const GpuImage& image, VkImageLayout from, Ac
     barrier.newLayout = to;
     barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     barrier.image = image.handle();
-    barrier.subresourceRange = {aspectOf(image.desc().format), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+    barrier.subresourceRange = {aspectOf(image.desc().format), 0, VK_REMAINING_MIP_LEVELS, 0,
+                                VK_REMAINING_ARRAY_LAYERS};
     return barrier;
 }
 
@@ -96,7 +98,8 @@ void Uploader::image(const GpuImage& target, std::span<const std::uint8_t> texel
         VkImageBlit blit{};
         blit.srcSubresource = {aspectOf(desc.format), mip, 0, 1};
         blit.dstSubresource = {aspectOf(desc.format), mip + 1, 0, 1};
-        blit.srcOffsets[1] = {static_cast<int>(std::max(desc.width >> mip, 1u)), static_cast<int>(std::max(desc.height >> mip, 1u)), 1};
+        blit.srcOffsets[1] = {static_cast<int>(std::max(desc.width >> mip, 1u)),
+                              static_cast<int>(std::max(desc.height >> mip, 1u)), 1};
         blit.dstOffsets[1] = {static_cast<int>(std::max(desc.width >> (mip + 1), 1u)),
                               static_cast<int>(std::max(desc.height >> (mip + 1), 1u)), 1};
         vkCmdBlitImage(cmd, target.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target.handle(),
@@ -129,15 +132,17 @@ void Uploader::finish() {
     pending_ = 0;
 }
 
-std::vector<std::uint8_t> readImage(const Device& device, const GpuImage& image, VkImageLayout layout, std::uint32_t layer,
-                                    std::uint32_t mip) {
+std::vector<std::uint8_t> readImage(const Device& device, const GpuImage& image, VkImageLayout layout,
+                                    std::uint32_t layer, std::uint32_t mip) {
     const ImageDesc& desc = image.desc();
     const std::uint32_t width = std::max(desc.width >> mip, 1u), height = std::max(desc.height >> mip, 1u);
     const VkDeviceSize bytes = VkDeviceSize{width} * height * bytesPerTexel(desc.format);
     Buffer target(device, "readback", bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Readback);
     device.submitAndWait([&](VkCommandBuffer cmd) {
-        constexpr Access kAny{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
-        VkImageMemoryBarrier2 barrier = imageBarrier(image, layout, kAny, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, access::kTransferRead);
+        constexpr Access kAny{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                              VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
+        VkImageMemoryBarrier2 barrier =
+            imageBarrier(image, layout, kAny, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, access::kTransferRead);
         recordBarriers(cmd, {&barrier, 1});
         VkBufferImageCopy copy{};
         copy.imageSubresource = {aspectOf(desc.format), mip, layer, 1};

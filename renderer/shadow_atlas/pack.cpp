@@ -22,7 +22,9 @@ std::uint32_t spread(std::uint32_t v) {
 }
 }  // namespace
 
-std::uint32_t MortonSpace::cellOf(std::uint32_t x, std::uint32_t y) { return spread(x) | (spread(y) << 1); }
+std::uint32_t MortonSpace::cellOf(std::uint32_t x, std::uint32_t y) {
+    return spread(x) | (spread(y) << 1);
+}
 void MortonSpace::placeOf(std::uint32_t cell, std::uint32_t& x, std::uint32_t& y) {
     x = compact(cell);
     y = compact(cell >> 1);
@@ -31,7 +33,9 @@ void MortonSpace::placeOf(std::uint32_t cell, std::uint32_t& x, std::uint32_t& y
 MortonSpace::MortonSpace(std::uint32_t sideCells, std::uint32_t layers)
     : cellsPerLayer_(std::uint64_t{sideCells} * sideCells), cells_(cellsPerLayer_ * layers) {}
 
-void MortonSpace::reserve(std::uint32_t firstCell, std::uint32_t sideCells) { taken_.emplace_back(firstCell, sideCells * sideCells); }
+void MortonSpace::reserve(std::uint32_t firstCell, std::uint32_t sideCells) {
+    taken_.emplace_back(firstCell, sideCells * sideCells);
+}
 
 void MortonSpace::buildFreeLists() {
     built_ = true;

@@ -1,6 +1,7 @@
 #pragma once
 // Free space of an atlas as power-of-two squares along a Morton curve. A square of 2^k cells a side, aligned to its own
-// size, is one aligned run of 4^k cells on the curve: packing squares is packing aligned intervals, which loses nothing.
+// size, is one aligned run of 4^k cells on the curve: packing squares is packing aligned intervals, which loses
+// nothing.
 
 #include <array>
 #include <cstdint>
@@ -26,8 +27,8 @@ private:
     void buildFreeLists();
     static constexpr std::uint32_t kLevels = 11;
     std::uint64_t cellsPerLayer_, cells_;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> taken_;       // first cell, cells
-    std::array<std::vector<std::uint32_t>, kLevels> free_;  // by log2 of the side, descending first cells
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> taken_;  // first cell, cells
+    std::array<std::vector<std::uint32_t>, kLevels> free_;        // by log2 of the side, descending first cells
     bool built_ = false;
 };
 

@@ -17,7 +17,9 @@ constexpr float kHysteresisLog2 = 0.75f;
 // What is outside of the camera's frustum counts this much less when squares are shrunk.
 constexpr float kUnseenImportance = 0.125f;
 
-std::uint32_t facesOf(LightKind kind) { return kind == LightKind::Point ? 6u : 1u; }
+std::uint32_t facesOf(LightKind kind) {
+    return kind == LightKind::Point ? 6u : 1u;
+}
 
 struct Sphere {
     glm::dvec3 centre;
@@ -81,7 +83,8 @@ struct ShadowPlanner::Wish {
     float importance;
 };
 
-std::vector<ShadowPlanner::Wish> ShadowPlanner::wishes(std::span<const ShadowLight> lights, const ShadowPlanCamera& camera) {
+std::vector<ShadowPlanner::Wish> ShadowPlanner::wishes(std::span<const ShadowLight> lights,
+                                                       const ShadowPlanCamera& camera) {
     std::vector<Wish> out;
     for (std::uint32_t l = 0; l < lights.size(); ++l) {
         const ShadowLight& light = lights[l];
@@ -98,7 +101,8 @@ std::vector<ShadowPlanner::Wish> ShadowPlanner::wishes(std::span<const ShadowLig
         const bool point = light.kind == LightKind::Point;
         const std::uint32_t low = point ? settings_.minFacePx : settings_.minSpotPx;
         const std::uint32_t high = std::min(point ? settings_.maxFacePx : settings_.maxSpotPx, settings_.atlasSizePx);
-        const float wishLog2 = std::log2(std::clamp(diameterPx * settings_.texelsPerPixel, static_cast<float>(low), static_cast<float>(high)));
+        const float wishLog2 = std::log2(
+            std::clamp(diameterPx * settings_.texelsPerPixel, static_cast<float>(low), static_cast<float>(high)));
         auto [known, isNew] = wishedLog2_.try_emplace(l, static_cast<std::uint32_t>(std::lround(wishLog2)));
         if (std::abs(wishLog2 - static_cast<float>(known->second)) > kHysteresisLog2) {
             known->second = static_cast<std::uint32_t>(std::lround(wishLog2));
@@ -118,7 +122,9 @@ void ShadowPlanner::shrinkToFit(std::vector<Wish>& wishes, ShadowPlan& plan) con
     // The heaviest for its importance first; ties by the light's index, so that plans are reproducible.
     using Entry = std::pair<double, std::uint32_t>;
     std::priority_queue<Entry> heap;
-    auto weight = [&](const Wish& w) { return static_cast<double>(texels(w)) / std::max(1e-3, static_cast<double>(w.importance) * w.importance); };
+    auto weight = [&](const Wish& w) {
+        return static_cast<double>(texels(w)) / std::max(1e-3, static_cast<double>(w.importance) * w.importance);
+    };
     for (std::uint32_t i = 0; i < wishes.size(); ++i) {
         if (wishes[i].size > wishes[i].smallest) heap.emplace(weight(wishes[i]), i);
     }
@@ -132,7 +138,8 @@ void ShadowPlanner::shrinkToFit(std::vector<Wish>& wishes, ShadowPlan& plan) con
         if (wishes[i].size > wishes[i].smallest) heap.emplace(weight(wishes[i]), i);
     }
     if (sum > plan.atlasTexels) {
-        std::stable_sort(wishes.begin(), wishes.end(), [](const Wish& a, const Wish& b) { return a.importance > b.importance; });
+        std::stable_sort(wishes.begin(), wishes.end(),
+                         [](const Wish& a, const Wish& b) { return a.importance > b.importance; });
         while (sum > plan.atlasTexels) {
             sum -= texels(wishes.back());
             wishes.pop_back();
@@ -149,7 +156,8 @@ void ShadowPlanner::place(ShadowPlan& plan) {
     const std::uint32_t side = settings_.atlasSizePx / cell, cellsPerLayer = side * side;
     std::vector<std::uint32_t> order(plan.views.size());
     for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return plan.views[a].size > plan.views[b].size; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return plan.views[a].size > plan.views[b].size; });
 
     auto attempt = [&](bool keep) {
         MortonSpace space(side, settings_.layers);
@@ -184,7 +192,8 @@ void ShadowPlanner::place(ShadowPlan& plan) {
     attempt(false);  // sorted by size without gaps: fits whenever the sum of areas does
 }
 
-ShadowPlan ShadowPlanner::plan(std::span<const ShadowLight> lights, const ShadowPlanCamera& camera, const glm::dvec3& origin) {
+ShadowPlan ShadowPlanner::plan(std::span<const ShadowLight> lights, const ShadowPlanCamera& camera,
+                               const glm::dvec3& origin) {
     ShadowPlan plan;
     plan.atlasTexels = std::uint64_t{settings_.atlasSizePx} * settings_.atlasSizePx * settings_.layers;
     std::vector<Wish> granted = wishes(lights, camera);

@@ -3,8 +3,8 @@
 //
 // Every casting light wishes for a resolution by its size on screen. If the wishes exceed the atlas, the squares that
 // weigh most for their importance are halved first; nothing is dropped unless even the smallest squares do not fit.
-// Squares are powers of two along a Morton curve, so they pack without loss; a square whose size did not change keeps its
-// place, so that its contents can be kept from frame to frame.
+// Squares are powers of two along a Morton curve, so they pack without loss; a square whose size did not change keeps
+// its place, so that its contents can be kept from frame to frame.
 
 #include <cstdint>
 #include <glm/glm.hpp>

@@ -22,10 +22,12 @@ constexpr std::uint32_t kMaskedFragmentSpirv[] = {
 std::uint32_t ShadowAtlasImage::defaultSizePx(const Device& device, std::uint32_t screenHeightPx) {
     const std::uint32_t wanted = screenHeightPx <= 1080 ? 4096u : 8192u;
     const VkPhysicalDeviceLimits& limits = device.limits();
-    return std::min(wanted, std::bit_floor(std::min({limits.maxImageDimension2D, limits.maxFramebufferWidth, limits.maxFramebufferHeight})));
+    return std::min(wanted, std::bit_floor(std::min({limits.maxImageDimension2D, limits.maxFramebufferWidth,
+                                                     limits.maxFramebufferHeight})));
 }
 
-ShadowAtlasImage::ShadowAtlasImage(const Device& device, const GpuScene& scene, std::uint32_t sizePx, std::uint32_t layers)
+ShadowAtlasImage::ShadowAtlasImage(const Device& device, const GpuScene& scene, std::uint32_t sizePx,
+                                   std::uint32_t layers)
     : device_(device), sizePx_(sizePx) {
     if (!std::has_single_bit(sizePx)) throw GpuError("The shadow atlas' side must be a power of two.");
     const VkPhysicalDeviceLimits& limits = device.limits();
@@ -39,15 +41,16 @@ ShadowAtlasImage::ShadowAtlasImage(const Device& device, const GpuScene& scene, 
     desc.width = desc.height = sizePx;
     desc.layers = layers;
     desc.arrayView = true;
-    desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                 VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                 VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     image_ = GpuImage(device, desc);
     device.submitAndWait([&](VkCommandBuffer commands) {
         VkImageMemoryBarrier2 barrier = imageBarrier(image_, VK_IMAGE_LAYOUT_UNDEFINED, access::kNone,
                                                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, access::kTransferWrite);
         recordBarriers(commands, {&barrier, 1});
         const VkClearDepthStencilValue unoccluded{0.0f, 0};
-        vkCmdClearDepthStencilImage(commands, image_.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &unoccluded, 1, &barrier.subresourceRange);
+        vkCmdClearDepthStencilImage(commands, image_.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &unoccluded, 1,
+                                    &barrier.subresourceRange);
         barrier = imageBarrier(image_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, access::kTransferWrite,
                                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, access::kSampled);
         recordBarriers(commands, {&barrier, 1});
@@ -65,9 +68,10 @@ ShadowAtlasImage::ShadowAtlasImage(const Device& device, const GpuScene& scene, 
     masked_ = makeGraphicsPipeline(device, pipeline);
 }
 
-ShadowAtlasImage::Key ShadowAtlasImage::keyOf(const GpuScene& scene, const ShadowLight& light, const PlannedView& view) const {
-    return {light.position, light.direction, light.rangeMetres, light.outerConeAngle, light.kind, view.face,
-            view.x, view.y, view.layer, view.size, scene.castersRevision()};
+ShadowAtlasImage::Key ShadowAtlasImage::keyOf(const GpuScene& scene, const ShadowLight& light,
+                                              const PlannedView& view) const {
+    return {light.position, light.direction, light.rangeMetres, light.outerConeAngle,   light.kind, view.face, view.x,
+            view.y,         view.layer,      view.size,         scene.castersRevision()};
 }
 
 void ShadowAtlasImage::findTasks(const GpuScene& scene, std::span<const ShadowLight> lights, const ShadowPlan& plan,
@@ -110,15 +114,20 @@ void ShadowAtlasImage::drawView(VkCommandBuffer commands, const GpuScene& scene,
                                 ShadowAtlasStatistics& statistics) const {
     const PlannedView& view = *task.view;
     const VkRect2D rect{{static_cast<int>(view.x), static_cast<int>(view.y)}, {view.size, view.size}};
-    const VkViewport viewport{static_cast<float>(view.x), static_cast<float>(view.y), static_cast<float>(view.size),
-                              static_cast<float>(view.size), 0.0f, 1.0f};
+    const VkViewport viewport{static_cast<float>(view.x),
+                              static_cast<float>(view.y),
+                              static_cast<float>(view.size),
+                              static_cast<float>(view.size),
+                              0.0f,
+                              1.0f};
     vkCmdSetViewport(commands, 0, 1, &viewport);
     vkCmdSetScissor(commands, 0, 1, &rect);
     VkClearAttachment clear{};
     clear.aspectMask = VK_IMAGE_ASPECT_DEPTH_BIT;
     const VkClearRect clearRect{rect, 0, 1};
     vkCmdClearAttachments(commands, 1, &clear, 1, &clearRect);
-    vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(view.view.clipFromWorld), view.view.clipFromWorld);
+    vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(view.view.clipFromWorld),
+                       view.view.clipFromWorld);
     VkPipeline bound = VK_NULL_HANDLE;
     std::uint32_t material = kNone;
     for (std::uint32_t r = task.firstRange; r < task.firstRange + task.rangeCount; ++r) {
@@ -163,8 +172,8 @@ void ShadowAtlasImage::drawLayer(VkCommandBuffer commands, const GpuScene& scene
     vkCmdEndRendering(commands);
 }
 
-ShadowAtlasStatistics ShadowAtlasImage::record(VkCommandBuffer commands, const GpuScene& scene, std::span<const ShadowLight> lights,
-                                               const ShadowPlan& plan) {
+ShadowAtlasStatistics ShadowAtlasImage::record(VkCommandBuffer commands, const GpuScene& scene,
+                                               std::span<const ShadowLight> lights, const ShadowPlan& plan) {
     const auto start = std::chrono::steady_clock::now();
     ShadowAtlasStatistics statistics;
     findTasks(scene, lights, plan, statistics);
@@ -173,12 +182,14 @@ ShadowAtlasStatistics ShadowAtlasImage::record(VkCommandBuffer commands, const G
         VkImageMemoryBarrier2 barrier = imageBarrier(image_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kReaders,
                                                      VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, access::kDepthWrite);
         recordBarriers(commands, {&barrier, 1});
-        for (std::uint32_t layer = 0; layer < image_.desc().layers; ++layer) drawLayer(commands, scene, layer, statistics);
+        for (std::uint32_t layer = 0; layer < image_.desc().layers; ++layer)
+            drawLayer(commands, scene, layer, statistics);
         barrier = imageBarrier(image_, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, access::kDepthWrite,
                                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, access::kSampled);
         recordBarriers(commands, {&barrier, 1});
     }
-    statistics.cullMilliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    statistics.cullMilliseconds =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return statistics;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 // The shadow atlas: one D32 image with layers, and the pass that draws those views whose content changed.
 //
-// Everything is drawn without hardware bias and without culling of faces: cloth without thickness casts from both sides;
-// the library's oriented bias does the rest. Reversed Z.
+// Everything is drawn without hardware bias and without culling of faces: cloth without thickness casts from both
+// sides; the library's oriented bias does the rest. Reversed Z.
 
 #include <cstdint>
 #include <unordered_map>
@@ -32,8 +32,8 @@ public:
     /// Creates the image, wholly unoccluded. The scene gives the set layouts. Throws GpuError.
     ShadowAtlasImage(const Device& device, const GpuScene& scene, std::uint32_t sizePx, std::uint32_t layers = 1);
 
-    /// Draws what changed: a view is drawn again if its light, its rectangle or the scene's casters changed. `lights` is
-    /// what the plan was made from. After GpuScene::recordTransforms() with the plan's origin, outside of rendering.
+    /// Draws what changed: a view is drawn again if its light, its rectangle or the scene's casters changed. `lights`
+    /// is what the plan was made from. After GpuScene::recordTransforms() with the plan's origin, outside of rendering.
     /// Afterwards visible to sampled reads of compute and fragment shaders.
     ShadowAtlasStatistics record(VkCommandBuffer commands, const GpuScene& scene, std::span<const ShadowLight> lights,
                                  const ShadowPlan& plan);
@@ -61,9 +61,12 @@ private:
         std::uint32_t firstRange, rangeCount;
     };
     [[nodiscard]] Key keyOf(const GpuScene& scene, const ShadowLight& light, const PlannedView& view) const;
-    void findTasks(const GpuScene& scene, std::span<const ShadowLight> lights, const ShadowPlan& plan, ShadowAtlasStatistics& statistics);
-    void drawLayer(VkCommandBuffer commands, const GpuScene& scene, std::uint32_t layer, ShadowAtlasStatistics& statistics) const;
-    void drawView(VkCommandBuffer commands, const GpuScene& scene, const Task& task, ShadowAtlasStatistics& statistics) const;
+    void findTasks(const GpuScene& scene, std::span<const ShadowLight> lights, const ShadowPlan& plan,
+                   ShadowAtlasStatistics& statistics);
+    void drawLayer(VkCommandBuffer commands, const GpuScene& scene, std::uint32_t layer,
+                   ShadowAtlasStatistics& statistics) const;
+    void drawView(VkCommandBuffer commands, const GpuScene& scene, const Task& task,
+                  ShadowAtlasStatistics& statistics) const;
 
     const Device& device_;
     std::uint32_t sizePx_;

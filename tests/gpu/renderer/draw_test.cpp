@@ -37,8 +37,9 @@ Scene testScene(const glm::vec3& place) {
     const glm::mat4 at = glm::translate(glm::mat4(1.0f), place);
     scene.instances.push_back({"floor", 0, at * glm::scale(glm::mat4(1.0f), glm::vec3(10.0f)) * faceUp});
     scene.instances.push_back(
-        {"roof", 1, at * glm::translate(glm::mat4(1.0f), {0, 1, 0}) * faceUp * glm::scale(glm::mat4(1.0f), {-0.5f, 0.5f, 1})});
-    scene.instances.push_back({"unseen", 1, at * glm::translate(glm::mat4(1.0f), {0, -500, 0}) * faceUp});
+        {"roof", 1,
+         at * glm::translate(glm::mat4(1.0f), {0, 1, 0}) * faceUp * glm::scale(glm::mat4(1.0f), {-0.5f, 0.5f, 1})});
+    scene.instances.push_back({"unseen", 1, at * glm::translate(glm::mat4(1.0f), {500, 0, 0}) * faceUp});
     return scene;
 }
 
@@ -105,8 +106,10 @@ protected:
     static std::vector<DeviceInfo> suitable() {
         std::vector<DeviceInfo> out;
         for (const DeviceInfo& d : instance().listDevices()) {
-            if (d.suitable) out.push_back(d);
-            else std::printf("skipped: %s\n", d.missing.c_str());
+            if (d.suitable)
+                out.push_back(d);
+            else
+                std::printf("skipped: %s\n", d.missing.c_str());
         }
         return out;
     }
@@ -219,23 +222,28 @@ TEST_F(DrawTest, ShadowAtlasHoldsLinearDepthAndCaches) {
                     const glm::vec4 through = worldFromClip * glm::vec4(ndcX, ndcY, 0.9f, 1.0f);
                     const glm::dvec3 ray = glm::dvec3(glm::vec3(through) / through.w) - light;
                     const float got = depths[(planned.y + y) * settings.atlasSizePx + planned.x + x];
-                    const glm::dvec3 forward =
-                        planned.light == 0 ? glm::dvec3(0, -1, 0)
-                                           : glm::dvec3((planned.face == 0) - (planned.face == 1), (planned.face == 2) - (planned.face == 3),
-                                                        (planned.face == 4) - (planned.face == 5));
+                    const glm::dvec3 forward = planned.light == 0
+                                                   ? glm::dvec3(0, -1, 0)
+                                                   : glm::dvec3((planned.face == 0) - (planned.face == 1),
+                                                                (planned.face == 2) - (planned.face == 3),
+                                                                (planned.face == 4) - (planned.face == 5));
                     double expected = 0.0;  // nothing
                     bool edge = ray.y > -1e-3;
                     if (ray.y < -1e-3) {
-                        const glm::dvec3 roof = light + ray * ((1.0 - light.y) / ray.y), floor = light - ray * (light.y / ray.y);
-                        const double r = std::max(std::abs(roof.x), std::abs(roof.z)), f = std::max(std::abs(floor.x), std::abs(floor.z));
+                        const glm::dvec3 roof = light + ray * ((1.0 - light.y) / ray.y),
+                                         floor = light - ray * (light.y / ray.y);
+                        const double r = std::max(std::abs(roof.x), std::abs(roof.z)),
+                                     f = std::max(std::abs(floor.x), std::abs(floor.z));
                         edge = std::abs(r - 0.5) < 0.1 || std::abs(f - 10.0) < 1.0;
                         const double linear = glm::dot((r < 0.5 ? roof : floor) - light, forward);
                         const double n = view.nearMetres, far = view.farMetres;
                         edge = edge || std::abs(linear - far) < 0.3;
-                        if ((r < 0.5 || f < 10.0) && linear < far) expected = -n / (far - n) + n * far / (far - n) / linear;
+                        if ((r < 0.5 || f < 10.0) && linear < far)
+                            expected = -n / (far - n) + n * far / (far - n) / linear;
                     }
                     if (edge) continue;
-                    ASSERT_NEAR(got, expected, 2e-6 + expected * 2e-4) << "light " << planned.light << " face " << planned.face << " at " << x << "," << y;
+                    ASSERT_NEAR(got, expected, 2e-6 + expected * 2e-4)
+                        << "light " << planned.light << " face " << planned.face << " at " << x << "," << y;
                 }
             }
         }

@@ -14,7 +14,8 @@ namespace {
 
 std::vector<ShadowLight> randomLights(std::size_t count, std::uint32_t seed) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<float> place(-40.0f, 40.0f), range(1.0f, 15.0f), angle(0.2f, 1.3f), unit(-1.0f, 1.0f);
+    std::uniform_real_distribution<float> place(-40.0f, 40.0f), range(1.0f, 15.0f), angle(0.2f, 1.3f),
+        unit(-1.0f, 1.0f);
     std::vector<ShadowLight> lights(count);
     for (ShadowLight& light : lights) {
         light.kind = random() % 2 == 0 ? LightKind::Point : LightKind::Spot;
@@ -105,7 +106,8 @@ TEST(ShadowPlan, SixFacesCoverEveryDirectionWithTheGuardBand) {
         const std::uint32_t axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
         const std::uint32_t face = axis * 2 + (d[static_cast<int>(axis)] < 0.0f ? 1u : 0u);
         const ShadowView view = makeShadowView(light, face, 64, 4, origin);
-        const glm::vec4 clip = glm::make_mat4(view.clipFromWorld) * glm::vec4(glm::vec3(light.position - origin) + d * 5.0f, 1.0f);
+        const glm::vec4 clip =
+            glm::make_mat4(view.clipFromWorld) * glm::vec4(glm::vec3(light.position - origin) + d * 5.0f, 1.0f);
         const glm::vec3 ndc = glm::vec3(clip) / clip.w;
         // Four texels of guard band on each side: the face itself ends at (32 - 4) / 32.
         EXPECT_LE(std::max(std::abs(ndc.x), std::abs(ndc.y)), 28.0f / 32.0f + 1e-4f);
@@ -127,7 +129,8 @@ TEST(ShadowPlan, ASpotsConeLiesInsideItsSquare) {
         const glm::vec3 other = glm::cross(side, light.direction);
         for (int i = 0; i < 32; ++i) {
             const float turn = static_cast<float>(i) * 0.19634954f;
-            const glm::vec3 rim = light.direction * std::cos(angle) + (side * std::cos(turn) + other * std::sin(turn)) * std::sin(angle);
+            const glm::vec3 rim =
+                light.direction * std::cos(angle) + (side * std::cos(turn) + other * std::sin(turn)) * std::sin(angle);
             const glm::vec4 clip = glm::make_mat4(view.clipFromWorld) * glm::vec4(rim * 0.9f, 1.0f);
             EXPECT_LE(std::max(std::abs(clip.x), std::abs(clip.y)) / clip.w, 60.0f / 64.0f + 1e-4f);
         }

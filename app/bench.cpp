@@ -1,0 +1,109 @@
+// Measures variants in one process, in turn, frame by frame: whatever the machine does meanwhile (clocks, heat, other
+// work) meets all of them alike, and the ratio is the result.
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <set>
+
+#include "app/bench_report.h"
+#include "app/commands.h"
+#include "app/errors.h"
+#include "app/progress.h"
+#include "app/session.h"
+#include "renderer/picture/picture.h"
+
+namespace gnomon::app {
+namespace {
+
+struct BenchOptions {
+    Settings settings;
+    std::uint32_t warmUp = 20, frames = 200;
+    std::vector<std::string> variants = {"deferred", "inline"};
+    std::string json;
+};
+
+// The renderer remembers two finished frames, so frames go in pairs: submit two, wait, read both.
+class PairedFrames {
+public:
+    explicit PairedFrames(renderer::Renderer& renderer) : renderer_(renderer) {}
+
+    void submit(const renderer::SceneCamera& camera, Variant& variant, bool counts) {
+        const std::uint64_t number = renderer_.renderFrame(camera, shadowModeOf(variant.name()));
+        pending_.push_back({number, counts ? &variant : nullptr});
+        if (pending_.size() == 2) finish();
+    }
+
+    void finish() {
+        renderer_.wait();
+        for (const Pending& frame : pending_)
+            if (frame.variant != nullptr) frame.variant->add(renderer_.report(frame.number));
+        pending_.clear();
+    }
+
+private:
+    struct Pending {
+        std::uint64_t number;
+        Variant* variant;  // null while warming up
+    };
+    renderer::Renderer& renderer_;
+    std::vector<Pending> pending_;
+};
+
+std::vector<Variant> measure(renderer::Renderer& renderer, const Session& session, const BenchOptions& options) {
+    std::vector<Variant> variants(options.variants.begin(), options.variants.end());
+    const std::uint32_t rounds = options.warmUp + options.frames;
+    FrameProgress progress(std::uint64_t{rounds} * variants.size());
+    PairedFrames frames(renderer);
+    for (std::uint32_t round = 0; round < rounds; ++round)
+        for (Variant& variant : variants) {
+            frames.submit(session.camera(), variant, round >= options.warmUp);
+            progress.step();
+        }
+    frames.finish();
+    return variants;
+}
+
+void benchWithin(const renderer::VulkanInstance& instance, const BenchOptions& options) {
+    const Session session(instance, options.settings);
+    if (session.device().timestampPeriodNs() == 0.0)
+        throw std::runtime_error(fmt::format("'{}' has no timestamps to measure with.", session.device().info().name));
+    renderer::Renderer renderer(session.device(), session.scene(), session.rendererDesc());
+    const std::vector<Variant> variants = measure(renderer, session, options);
+    if (!options.json.empty()) writeJson(describeBench(session, variants), options.json);
+    printBench(session, variants);
+}
+
+int bench(const BenchOptions& options) {
+    rendererDescOf(options.settings);  // refuses wrong settings before anything is started
+    std::set<std::string> names;
+    for (const std::string& name : options.variants) {
+        shadowModeOf(name);
+        if (!names.insert(name).second) throw UsageError(fmt::format("--variants names '{}' twice.", name));
+    }
+    if (!options.json.empty()) renderer::checkWritable(options.json);
+    const renderer::VulkanInstance instance(instanceDescOf(options.settings));
+    benchWithin(instance, options);
+    return exitCodeOf(instance, options.settings);
+}
+
+}  // namespace
+
+void addBenchCommand(CLI::App& app, Work& chosen) {
+    CLI::App* command = app.add_subcommand("bench", "Measure ways to shadow against each other");
+    const auto options = std::make_shared<BenchOptions>();
+    addSettings(*command, options->settings);
+    command->add_option("--warmup", options->warmUp, "Rounds that do not count")
+        ->check(CLI::Range(0, 10'000))
+        ->capture_default_str();
+    command->add_option("--frames", options->frames, "Rounds that count")
+        ->check(CLI::Range(1, 100'000))
+        ->capture_default_str();
+    command->add_option("--variants", options->variants, "Some of deferred,inline,off")
+        ->delimiter(',')
+        ->capture_default_str();
+    command->add_option("--json", options->json, "Write the measurement to a file");
+    command->callback([&chosen, options] { chosen = [options] { return bench(*options); }; });
+}
+
+}  // namespace gnomon::app

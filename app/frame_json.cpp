@@ -1,0 +1,116 @@
+#include "app/frame_json.h"
+
+#include <span>
+
+#include "app/build_info.h"
+#include "renderer/picture/files.h"
+
+namespace gnomon::app {
+namespace {
+
+Json settingsOf(const Settings& s) {
+    return {{"camera", s.camera},
+            {"lights", s.lights},
+            {"seed", s.seed},
+            {"filter", s.filter},
+            {"pcfRadius", s.pcfRadius},
+            {"listEntries", s.listEntries},
+            {"visibilitySlots", s.visibilitySlots},
+            {"reservation", s.reservation},
+            {"subgroupSize", s.subgroupSize},
+            {"depth", s.depth},
+            {"atlas", s.atlas},
+            {"unquantised", s.unquantised},
+            {"validate", s.validate}};
+}
+
+Json lightsOf(const PrepareReport& lights) {
+    return {{"given", lights.given},
+            {"visible", lights.visible},
+            {"dropped", lights.dropped},
+            {"directional", lights.directional},
+            {"casting", lights.casting}};
+}
+
+Json passesOf(const std::vector<renderer::PassTime>& passes) {
+    Json out = Json::array();
+    for (const renderer::PassTime& pass : passes)
+        out.push_back({{"name", pass.name}, {"drawing", pass.drawing}, {"ms", pass.milliseconds}});
+    return out;
+}
+
+Json memoryOf(const std::vector<renderer::MemoryUseRow>& rows) {
+    Json library = Json::object(), host = Json::object();
+    for (const renderer::MemoryUseRow& row : rows) (row.library ? library : host)[row.name] = row.bytes;
+    return {{"library", library}, {"renderer", host}};
+}
+
+}  // namespace
+
+Json describe(const Session& session) {
+    const renderer::DeviceInfo& info = session.device().info();
+    return {{"program", "gnomon " + version()},
+            {"commit", commit()},
+            {"device", info.name},
+            {"deviceType", info.typeName},
+            {"driver", info.driver},
+            {"scene", session.settings().scene},
+            {"triangles", renderer::triangleCount(session.scene())},
+            {"extent", {session.rendererDesc().widthPx, session.rendererDesc().heightPx}},
+            {"settings", settingsOf(session.settings())}};
+}
+
+Json countersOf(const FrameResult& result) {
+    const FrameStatistics& s = result.report.statistics;
+    return {{"listEntries", s.listEntries},
+            {"visibilitySlots", s.visibilitySlots},
+            {"listOverflowTiles", s.listOverflowTiles},
+            {"slotOverflowEntries", s.slotOverflowEntries},
+            {"accurateExceedsApproximate", s.accurateExceedsApproximate},
+            {"evaluateTiles", s.evaluateTiles},
+            {"tilesWithGeometry", s.tilesWithGeometry},
+            {"approximateEntries", s.approximateEntries},
+            {"earlyEntries", s.earlyEntries},
+            {"earlyCastingEntries", s.earlyCastingEntries},
+            {"finalEntries", s.finalEntries},
+            {"finalSlotEntries", s.finalSlotEntries},
+            {"maxLightsInTile", s.maxLightsInTile},
+            {"meanLightsPerTile", meanPerTile(s.earlyEntries, s)},
+            {"meanShadowedLightsPerTile", meanPerTile(s.earlyCastingEntries, s)},
+            {"recommendedListEntries", s.recommendedListEntries},
+            {"recommendedVisibilitySlots", s.recommendedVisibilitySlots}};
+}
+
+Json describe(const Session& session, const FrameResult& result) {
+    const renderer::FrameReport& report = result.report;
+    const Totals totals = totalsOf(report.passes);
+    Json out = describe(session);
+    out["shadows"] = result.shadows;
+    out["frames"] = result.frames;
+    out["lights"] = lightsOf(report.statistics.lights);
+    out["passes"] = passesOf(report.passes);
+    out["drawingMs"] = totals.drawing;
+    out["computeMs"] = totals.compute;
+    out["prepareCpuMs"] = report.statistics.prepareMilliseconds;
+    out["memoryBytes"] = memoryOf(result.memory);
+    out["capacities"] = {{"listEntries", result.library.listEntries},
+                         {"visibilitySlots", result.library.visibilitySlots},
+                         {"poolsCapped", result.library.poolsCapped}};
+    out["counters"] = countersOf(result);
+    out["shadowAtlas"] = {{"sizePx", report.atlasSizePx},
+                          {"views", report.shadowViews},
+                          {"viewsDrawn", report.shadowViewsDrawn},
+                          {"trianglesDrawn", report.shadowTrianglesDrawn},
+                          {"lightsShrunk", report.shadowLightsShrunk},
+                          {"lightsDropped", report.shadowLightsDropped}};
+    out["exposureEv100"] = result.exposureEv100;
+    out["hash"] = result.hash;
+    return out;
+}
+
+void writeJson(const Json& json, const std::filesystem::path& file) {
+    const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    renderer::replaceFile(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+}  // namespace gnomon::app

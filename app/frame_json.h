@@ -1,0 +1,19 @@
+#pragma once
+// One frame as JSON, for machines.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "app/frame_table.h"
+
+namespace gnomon::app {
+
+using Json = nlohmann::ordered_json;
+
+/// Program, device, scene and every setting: what a measurement must state.
+Json describe(const Session& session);
+Json countersOf(const FrameResult& result);
+Json describe(const Session& session, const FrameResult& result);
+void writeJson(const Json& json, const std::filesystem::path& file);
+
+}  // namespace gnomon::app

@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "app/commands.h"
+#include "app/errors.h"
+#include "app/frame_json.h"
+#include "app/frame_table.h"
+#include "app/progress.h"
+#include "app/session.h"
+
+namespace gnomon::app {
+namespace {
+
+struct RenderOptions {
+    Settings settings;
+    std::string png, exr, statistics;
+    std::string shadows = "deferred";
+    std::uint32_t frames = 1;
+    std::optional<float> exposure;
+};
+
+void checkOutputs(const RenderOptions& options) {
+    for (const std::string& file : {options.png, options.exr, options.statistics})
+        if (!file.empty()) renderer::checkWritable(file);
+}
+
+FrameResult renderFrames(renderer::Renderer& renderer, const Session& session, const RenderOptions& options) {
+    const renderer::ShadowMode mode = shadowModeOf(options.shadows);
+    FrameProgress progress(options.frames);
+    std::uint64_t last = 0;
+    for (std::uint32_t i = 0; i < options.frames; ++i) {
+        last = renderer.renderFrame(session.camera(), mode);
+        if (i + 1 == options.frames) renderer.wait();
+        progress.step();
+    }
+    FrameResult result;
+    result.shadows = options.shadows;
+    result.frames = options.frames;
+    result.report = renderer.report(last);
+    result.memory = renderer.memory();
+    result.library = renderer.libraryMemory();
+    return result;
+}
+
+void writePictures(renderer::Renderer& renderer, const Session& session, const RenderOptions& options, FrameResult& result) {
+    const renderer::HdrPicture linear = renderer.readPicture();
+    result.exposureEv100 = options.exposure            ? *options.exposure
+                           : session.scene().exposureEv100 ? *session.scene().exposureEv100
+                                                           : renderer::automaticExposure(linear);
+    const renderer::Picture picture = renderer::toneMap(linear, result.exposureEv100);
+    result.hash = renderer::hashOf(picture);
+    if (!options.png.empty()) renderer::writePng(picture, options.png);
+    if (!options.exr.empty()) renderer::writeExr(linear, options.exr);
+}
+
+void renderWithin(const renderer::VulkanInstance& instance, const RenderOptions& options) {
+    const Session session(instance, options.settings);
+    const Stopwatch setUp;
+    renderer::Renderer renderer(session.device(), session.scene(), session.rendererDesc());
+    sayProgress(fmt::format("Set up in {:.1f} s.", setUp.seconds()));
+    FrameResult result = renderFrames(renderer, session, options);
+    writePictures(renderer, session, options, result);
+    if (!options.statistics.empty()) writeJson(describe(session, result), options.statistics);
+    printFrame(session, result);
+    if (!options.png.empty()) fmt::print("Written: {}\n", options.png);
+}
+
+int render(const RenderOptions& options) {
+    if (options.exposure && !(std::abs(*options.exposure) <= 40.0f))
+        throw UsageError("--exposure must be an EV100 from -40 to 40.");
+    rendererDescOf(options.settings);  // refuses wrong settings before anything is started
+    checkOutputs(options);
+    const renderer::VulkanInstance instance(instanceDescOf(options.settings));
+    renderWithin(instance, options);
+    return exitCodeOf(instance, options.settings);
+}
+
+}  // namespace
+
+void addRenderCommand(CLI::App& app, Work& chosen) {
+    CLI::App* command = app.add_subcommand("render", "Render a scene into a picture");
+    const auto options = std::make_shared<RenderOptions>();
+    addSettings(*command, options->settings);
+    command->add_option("-o,--output", options->png, "The picture, a PNG file");
+    command->add_option("--exr", options->exr, "The linear picture, an EXR file");
+    command->add_option("--stats", options->statistics, "Times, memory and counters, a JSON file");
+    command->add_option("--shadows", options->shadows, "How lights are shadowed")
+        ->check(CLI::IsMember({"deferred", "inline", "off"}))
+        ->capture_default_str();
+    command->add_option("--frames", options->frames, "Frames to render; the last is kept")
+        ->check(CLI::Range(1, 100'000))
+        ->capture_default_str();
+    command->add_option("--exposure", options->exposure, "EV100; without it the scene's own, or from the picture");
+    command->callback([&chosen, options] { chosen = [options] { return render(*options); }; });
+}
+
+}  // namespace gnomon::app

@@ -1,0 +1,111 @@
+#include "app/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "app/errors.h"
+#include "app/progress.h"
+#include "renderer/builtin/builtin.h"
+#include "renderer/scene/load_gltf.h"
+
+namespace gnomon::app {
+namespace {
+
+using renderer::Scene;
+
+constexpr std::size_t kMostNotes = 10;
+constexpr std::uintmax_t kLongLoadBytes = 8u << 20;  // below, a file is loaded before anybody wonders
+
+renderer::DeviceInfo chooseDevice(const renderer::VulkanInstance& instance, const Settings& settings) {
+    if (settings.device.empty()) return instance.chooseDevice();
+    try {
+        return instance.chooseDevice(settings.device);
+    } catch (const renderer::GpuError& error) {
+        throw UsageError(error.what());
+    }
+}
+
+const renderer::DeviceInfo& fitting(const renderer::DeviceInfo& info, const renderer::RendererDesc& desc) {
+    const VkPhysicalDeviceLimits& limits = info.properties.limits;
+    const std::uint32_t most = std::min({limits.maxImageDimension2D, limits.maxFramebufferWidth,
+                                         limits.maxFramebufferHeight});
+    if (std::max({desc.widthPx, desc.heightPx, desc.atlasSizePx}) > most)
+        throw UsageError(fmt::format("'{}' draws pictures of at most {} pixels across.", info.name, most));
+    if (desc.subgroupSize != 0 &&
+        (desc.subgroupSize < info.minSubgroupSize || desc.subgroupSize > info.maxSubgroupSize))
+        throw UsageError(fmt::format("'{}' has subgroups of {} to {} lanes, not {}.", info.name, info.minSubgroupSize,
+                                     info.maxSubgroupSize, desc.subgroupSize));
+    return info;
+}
+
+Scene loadFile(const std::string& name) {
+    const std::filesystem::path path(name);
+    std::error_code error;
+    if (const auto bytes = std::filesystem::file_size(path, error); !error && bytes > kLongLoadBytes)
+        sayProgress(fmt::format("Loading {}, {:.0f} MiB.", name, static_cast<double>(bytes) / (1u << 20)));
+    Scene scene;
+    const Result loaded = renderer::loadGltf(path, scene);
+    if (loaded.status() == Status::OutOfMemory) throw std::runtime_error(loaded.message());
+    if (!loaded.ok()) throw UsageError(loaded.message());
+    return scene;
+}
+
+Scene loadScene(const Settings& settings) {
+    renderer::BuiltinOptions options;
+    options.seed = settings.seed;
+    options.lightCount = settings.lights;
+    Scene scene;
+    const std::string extension = std::filesystem::path(settings.scene).extension().string();
+    if (std::optional<Scene> builtin = renderer::makeBuiltinScene(settings.scene, options))
+        scene = std::move(*builtin);
+    else if (extension == ".gltf" || extension == ".glb")
+        scene = loadFile(settings.scene);
+    else
+        throw UsageError(fmt::format("There is no scene '{}': give a name that 'gnomon scenes' lists, or a .gltf or .glb file.",
+                                     settings.scene));
+    // The columns have places of their own for their lights.
+    if (settings.lights != 0 && settings.scene != "columns")
+        renderer::scatterLights(scene, settings.lights, settings.seed);
+    renderer::completeLights(scene);
+    return scene;
+}
+
+renderer::SceneCamera cameraOf(const Settings& settings, const Scene& scene) {
+    renderer::SceneCamera camera;
+    const Result parsed = renderer::parseCamera(settings.camera, scene, camera);
+    if (!parsed.ok()) throw UsageError(parsed.message());
+    return camera;
+}
+
+}  // namespace
+
+Session::Session(const renderer::VulkanInstance& instance, const Settings& settings)
+    : settings_(settings),
+      desc_(rendererDescOf(settings)),
+      device_(instance, fitting(chooseDevice(instance, settings), desc_)),
+      scene_(loadScene(settings)),
+      camera_(cameraOf(settings, scene_)) {
+    if (settings.quiet) silenceProgress();
+    sayProgress(fmt::format("Scene {}: {} triangles, {} lights.", settings.scene, renderer::triangleCount(scene_),
+                            scene_.lights.size()));
+    for (std::size_t i = 0; i < std::min(scene_.notes.size(), kMostNotes); ++i) sayWarning(scene_.notes[i]);
+    if (scene_.notes.size() > kMostNotes) sayWarning(fmt::format("{} more notes.", scene_.notes.size() - kMostNotes));
+    sayProgress(fmt::format("Device {} ({}).", device_.info().name, device_.info().driver));
+}
+
+renderer::InstanceDesc instanceDescOf(const Settings& settings) {
+    renderer::InstanceDesc desc;
+    desc.validation = settings.validate;
+    return desc;
+}
+
+int exitCodeOf(const renderer::VulkanInstance& instance, const Settings& settings) {
+    const std::size_t count = instance.messages().count();
+    if (!settings.validate) return kGood;
+    sayProgress(fmt::format("Validation messages: {}.", count));
+    return count == 0 ? kGood : kFailed;
+}
+
+}  // namespace gnomon::app

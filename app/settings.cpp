@@ -1,0 +1,93 @@
+#include "app/settings.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <string_view>
+
+#include "app/errors.h"
+
+namespace gnomon::app {
+namespace {
+
+constexpr std::uint32_t kMostPoolEntries = 1u << 30;
+
+// All of `text` as a number from 1 to kMostPixelsAcross; 0 otherwise.
+std::uint32_t pixelsAcross(std::string_view text) {
+    std::uint32_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool good = error == std::errc() && end == text.data() + text.size() && value <= kMostPixelsAcross;
+    return good ? value : 0;
+}
+
+void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
+    const std::size_t cross = text.find('x');
+    if (cross != std::string::npos) {
+        width = pixelsAcross(std::string_view(text).substr(0, cross));
+        height = pixelsAcross(std::string_view(text).substr(cross + 1));
+    }
+    if (cross == std::string::npos || width == 0 || height == 0)
+        throw UsageError(fmt::format("'{}' is no size: give WIDTHxHEIGHT as in 1280x720, each from 1 to {} pixels.",
+                                     text, kMostPixelsAcross));
+}
+
+}  // namespace
+
+void addSettings(CLI::App& command, Settings& s) {
+    command.add_option("scene", s.scene, "A built-in scene or a .gltf or .glb file")->capture_default_str();
+    command.add_option("--size", s.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+    command.add_option("--camera", s.camera, "A camera's name, #index, or eye:target[:degrees] as in 0,3,8:0,1,0:60")
+        ->capture_default_str();
+    command.add_option("--lights", s.lights, "Scatter so many shadowed lights over the scene")
+        ->check(CLI::Range(0u, kMostLights));
+    command.add_option("--seed", s.seed, "Of scattered lights")->capture_default_str();
+    command.add_option("--filter", s.filter, "Shadow filter")
+        ->check(CLI::IsMember({"hard", "pcf", "pcss"}))
+        ->capture_default_str();
+    command.add_option("--pcf-radius", s.pcfRadius, "Texels")->check(CLI::Range(1, 3))->capture_default_str();
+    command.add_option("--device", s.device, "Index or part of the name of a Vulkan device (see: gnomon devices)");
+    command.add_flag("--validate", s.validate, "Run under the validation layers; any message is a failure");
+    command.add_flag("--quiet", s.quiet, "No progress on stderr");
+    command.add_option("--list-entries", s.listEntries, "Capacity of the light lists; 0: 8 per tile")
+        ->check(CLI::Range(0u, kMostPoolEntries));
+    command.add_option("--visibility-slots", s.visibilitySlots, "Capacity of the visibility slots; 0: 8 per tile")
+        ->check(CLI::Range(0u, kMostPoolEntries));
+    command.add_option("--reservation", s.reservation, "How space in the light lists is given out")
+        ->check(CLI::IsMember({"approximate", "accurate", "fixed"}))
+        ->capture_default_str();
+    command.add_option("--subgroup-size", s.subgroupSize, "Lanes; 0: the device's own choice")
+        ->check(CLI::IsMember({0, 4, 8, 16, 32, 64}));
+    command.add_option("--depth", s.depth, "Depth buffer of the camera")
+        ->check(CLI::IsMember({"reversed", "standard"}))
+        ->capture_default_str();
+    command.add_option("--atlas", s.atlas, "Shadow atlas, pixels across; 0: by resolution")
+        ->check(CLI::IsMember({0, 256, 512, 1024, 2048, 4096, 8192, 16384}));
+    command.add_flag("--unquantised", s.unquantised, "Inline shadows without the 8 bits of a visibility slot");
+}
+
+renderer::RendererDesc rendererDescOf(const Settings& s) {
+    renderer::RendererDesc desc;
+    parseSize(s.size, desc.widthPx, desc.heightPx);
+    if (s.filter == "pcss") throw UsageError("The filter 'pcss' is not available yet; choose hard or pcf.");
+    desc.filter = s.filter == "hard" ? Filter::Hard : Filter::Pcf;
+    desc.pcfRadius = s.pcfRadius;
+    desc.listReservation = s.reservation == "accurate" ? ListReservation::Accurate
+                           : s.reservation == "fixed"  ? ListReservation::Fixed
+                                                       : ListReservation::Approximate;
+    desc.subgroupSize = s.subgroupSize;
+    desc.listEntries = s.listEntries;
+    desc.visibilitySlots = s.visibilitySlots;
+    desc.atlasSizePx = s.atlas;
+    desc.deviceDepth = s.depth == "standard" ? DeviceDepth::StandardZ : DeviceDepth::ReversedZ;
+    desc.quantiseInline = !s.unquantised;
+    return desc;
+}
+
+renderer::ShadowMode shadowModeOf(const std::string& name) {
+    if (name == "deferred") return renderer::ShadowMode::Deferred;
+    if (name == "inline") return renderer::ShadowMode::Inline;
+    if (name == "off") return renderer::ShadowMode::Off;
+    throw UsageError(fmt::format("'{}' is no way to shadow: choose deferred, inline or off.", name));
+}
+
+}  // namespace gnomon::app

@@ -1,0 +1,43 @@
+#pragma once
+// The options that `render` and `bench` share: which scene, seen how, drawn by what.
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "renderer/renderer.h"
+
+namespace gnomon::app {
+
+inline constexpr std::uint32_t kMostPixelsAcross = 16384;
+inline constexpr std::uint32_t kMostLights = 100'000;
+
+struct Settings {
+    std::string scene = "courtyard";
+    std::string size = "1280x720";
+    std::string camera = "default";
+    std::uint32_t lights = 0;
+    std::uint64_t seed = 1;
+    std::string filter = "pcf";
+    std::uint32_t pcfRadius = 1;
+    std::string device;
+    bool validate = false;
+    bool quiet = false;
+    std::uint32_t listEntries = 0, visibilitySlots = 0;
+    std::string reservation = "approximate";
+    std::uint32_t subgroupSize = 0;
+    std::string depth = "reversed";
+    std::uint32_t atlas = 0;
+    bool unquantised = false;
+};
+
+void addSettings(CLI::App& command, Settings& settings);
+
+/// Throws UsageError on what no device could do.
+renderer::RendererDesc rendererDescOf(const Settings& settings);
+
+/// "deferred", "inline" or "off"; throws UsageError otherwise.
+renderer::ShadowMode shadowModeOf(const std::string& name);
+
+}  // namespace gnomon::app

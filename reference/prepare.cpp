@@ -113,6 +113,7 @@ void checkStrayBits(Findings& findings, std::span<const std::uint32_t> entry, st
 }  // namespace
 
 Verdict isVisible(const LightModel& light, const CameraModel& camera) {
+    if (light.mask == 0) return Verdict::Never;
     if (light.type == LightType::Directional) return Verdict::Must;
     if (light.lightFade <= 0.0 || light.rangeMetres <= 0.0) return Verdict::Never;
     const Verdict verdict = meets(light, viewFrustum(camera), marginOf(light, camera));

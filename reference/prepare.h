@@ -16,7 +16,8 @@
 
 namespace gnomon::reference {
 
-/// Does the light's volume meet the view? Directional lights do. Lights that have faded away do not.
+/// Does the light's volume meet the view? Directional lights do. Lights that have faded
+/// away, and those that no receiver's mask can meet, do not.
 Verdict isVisible(const LightModel& light, const CameraModel& camera);
 
 /// Which lights are in the list, and in which order: every light that must be visible is there (unless the list is full),

@@ -148,6 +148,7 @@ void checkGBuffer(const Device& device, bool orthographic, DeviceDepth depth, co
             const bool roof = std::max(roofX, roofZ) < 0.5;
             const TriangleSource source = gpuScene.triangle(ids[i]);
             ASSERT_EQ(source.instance, roof ? 1u : 0u) << x << "," << y;
+            ASSERT_EQ(gpuScene.trianglePosition(ids[i]), source.instance * 2 + source.triangle);
             // Camera up is -z: pixel down is +z. On the floor the object's y is -z: the diagonal splits at x = -z.
             if (!roof && std::abs(ndcX + ndcY) > 0.05) {
                 ASSERT_EQ(source.triangle, ndcX > -ndcY ? 0u : 1u) << x << "," << y;
@@ -170,6 +171,53 @@ TEST_F(DrawTest, GBufferHoldsDepthFaceNormalAndTriangle) {
         checkGBuffer(device, true, DeviceDepth::ReversedZ, {0, 0, 0});
         checkGBuffer(device, true, DeviceDepth::StandardZ, {0, 0, 0});
         checkGBuffer(device, false, DeviceDepth::ReversedZ, {250000, 1000, -250000});
+    }
+    expectNoMessages();
+}
+
+// Winding: of four squares, plain or mirrored, towards the camera or away, single-sided ones show their front alone,
+// and whatever shows has its face normal towards the camera. A fifth is cut out by its alpha.
+TEST_F(DrawTest, WindingAndAlphaDecideWhatShows) {
+    for (const DeviceInfo& info : suitable()) {
+        SCOPED_TRACE(info.name);
+        const Device device(instance(), info);
+        Scene scene;
+        scene.materials.resize(2);
+        scene.materials[1].alphaMode = AlphaMode::Mask;
+        scene.materials[1].doubleSided = true;
+        scene.materials[1].baseColourTexture.image = 0;
+        scene.images.push_back({1, 1, {255, 255, 255, 100}});
+        scene.meshes = {squareMesh(), squareMesh()};
+        scene.meshes[1].primitives[0].material = 1;
+        scene.meshes[1].primitives[0].normals.assign(4, {0, 0, 1});
+        const glm::mat4 faceUp = glm::rotate(glm::mat4(1.0f), glm::radians(-90.0f), glm::vec3(1, 0, 0));
+        const glm::mat4 turned = glm::rotate(glm::mat4(1.0f), glm::radians(90.0f), glm::vec3(1, 0, 0));
+        const glm::mat4 mirror = glm::scale(glm::mat4(1.0f), {-1, 1, 1});
+        auto at = [](float x) { return glm::translate(glm::mat4(1.0f), {x, 0, 0}); };
+        const glm::mat4 places[] = {at(-3) * faceUp, at(-1) * faceUp * mirror, at(1) * turned, at(3) * turned * mirror};
+        for (const glm::mat4& place : places) scene.instances.push_back({"square", 0, place});
+        scene.instances.push_back({"masked", 1, at(-3) * glm::translate(glm::mat4(1.0f), {0, 1, 0}) * faceUp});
+        GpuScene gpuScene(device, scene);
+        GBuffer gbuffer(device, gpuScene, 64, 64);
+        auto draw = [&] {
+            const TestCamera test = cameraAbove({0, 4, 0}, true, DeviceDepth::ReversedZ);
+            device.submitAndWait([&](VkCommandBuffer commands) {
+                gpuScene.recordTransforms(commands, {});
+                gbuffer.record(commands, gpuScene, gbufferCameraOf(test.camera));
+            });
+        };
+        draw();
+        const auto ids = readAs<std::uint32_t>(device, gbuffer.image(GBuffer::TriangleId));
+        const auto faces = readAs<std::uint32_t>(device, gbuffer.image(GBuffer::FaceNormal));
+        for (std::uint32_t square = 0; square < 4; ++square) {
+            const std::uint32_t pixel = 33 * 64 + 8 + 16 * square;
+            EXPECT_EQ(gpuScene.triangle(ids[pixel]).instance, square < 2 ? square : kNone);
+            if (square >= 2) continue;
+            EXPECT_NEAR(decodeOctahedral(faces[pixel]).y, 1.0f, 1e-6f);
+        }
+        gpuScene.setInstance(4, glm::dmat4(glm::translate(glm::mat4(1.0f), {0, -1, 0})));
+        EXPECT_EQ(gpuScene.castersRevision(), 2u);
+        draw();
     }
     expectNoMessages();
 }

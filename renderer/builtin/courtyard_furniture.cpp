@@ -8,6 +8,19 @@
 namespace gnomon::renderer::courtyard {
 namespace {
 
+// Eight arcs of water from the bowl into the basin.
+void addJets(ShapeBuilder& jets) {
+    for (int i = 0; i < 8; ++i) {
+        const float angle = 0.785398f * (static_cast<float>(i) + 0.5f);
+        glm::vec3 path[9];
+        for (int k = 0; k < 9; ++k) {
+            const float t = static_cast<float>(k) / 8.0f, r = 0.95f + 0.5f * t;
+            path[k] = {r * std::cos(angle), 1.9f + 0.25f * t - 1.4f * t * t, r * std::sin(angle)};
+        }
+        jets.tube(path, 0.014f, 5);
+    }
+}
+
 void addFountain(Parts& parts) {
     ShapeBuilder steps(parts.materials.stone), basin(parts.materials.trim), water(parts.materials.water);
     ShapeBuilder figure(parts.materials.bronze), jets(parts.materials.spray);
@@ -31,15 +44,7 @@ void addFountain(Parts& parts) {
         const glm::vec2 disc[] = {{radius, height}, {0.0f, height}};
         water.lathe(disc, 32);
     }
-    for (int i = 0; i < 8; ++i) {
-        const float angle = 0.785398f * (static_cast<float>(i) + 0.5f);
-        glm::vec3 path[9];
-        for (int k = 0; k < 9; ++k) {
-            const float t = static_cast<float>(k) / 8.0f, r = 0.95f + 0.5f * t;
-            path[k] = {r * std::cos(angle), 1.9f + 0.25f * t - 1.4f * t * t, r * std::sin(angle)};
-        }
-        jets.tube(path, 0.014f, 5);
-    }
+    addJets(jets);
     std::vector<Primitive> all;
     for (ShapeBuilder* shape : {&steps, &basin, &water, &figure, &jets}) all.push_back(shape->take());
     parts.builder.place(parts.builder.mesh("fountain", std::move(all)), glm::mat4(1.0f));

@@ -4,6 +4,7 @@
 
 #include "renderer/builtin/courtyard.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 

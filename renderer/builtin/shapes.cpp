@@ -1,5 +1,6 @@
 #include "renderer/builtin/shapes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
@@ -22,6 +23,26 @@ glm::vec2 boxUv(const glm::vec3& p, const glm::vec3& n) {
 
 glm::vec3 turned(glm::vec2 radiusAndHeight, float angle) {
     return {radiusAndHeight.x * std::cos(angle), radiusAndHeight.y, radiusAndHeight.x * std::sin(angle)};
+}
+
+// Unit normals around every point of a path, carried along it without twist.
+std::vector<std::vector<glm::vec3>> tubeNormals(std::span<const glm::vec3> path, int sides) {
+    const auto direction = [&](std::size_t i) {
+        const std::size_t before = i > 0 ? i - 1 : i, after = i + 1 < path.size() ? i + 1 : i;
+        return glm::normalize(path[after] - path[before]);
+    };
+    glm::vec3 across = std::abs(direction(0).y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+    std::vector<std::vector<glm::vec3>> normals(path.size());
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const glm::vec3 forward = direction(i);
+        across = glm::normalize(across - forward * glm::dot(across, forward));  // transported without twist
+        const glm::vec3 side = glm::cross(forward, across);
+        for (int k = 0; k < sides; ++k) {
+            const float angle = kTau * static_cast<float>(k) / static_cast<float>(sides);
+            normals[i].push_back(across * std::cos(angle) + side * std::sin(angle));
+        }
+    }
+    return normals;
 }
 
 }  // namespace
@@ -129,21 +150,7 @@ void ShapeBuilder::sphere(const glm::vec3& centre, float radius, int rings, int 
 }
 
 void ShapeBuilder::tube(std::span<const glm::vec3> path, float radius, int sides) {
-    const auto direction = [&](std::size_t i) {
-        const std::size_t before = i > 0 ? i - 1 : i, after = i + 1 < path.size() ? i + 1 : i;
-        return glm::normalize(path[after] - path[before]);
-    };
-    glm::vec3 across = std::abs(direction(0).y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
-    std::vector<std::vector<glm::vec3>> normals(path.size());
-    for (std::size_t i = 0; i < path.size(); ++i) {
-        const glm::vec3 forward = direction(i);
-        across = glm::normalize(across - forward * glm::dot(across, forward));  // transported without twist
-        const glm::vec3 side = glm::cross(forward, across);
-        for (int k = 0; k < sides; ++k) {
-            const float angle = kTau * static_cast<float>(k) / static_cast<float>(sides);
-            normals[i].push_back(across * std::cos(angle) + side * std::sin(angle));
-        }
-    }
+    const std::vector<std::vector<glm::vec3>> normals = tubeNormals(path, sides);
     float along = 0.0f;
     for (std::size_t i = 0; i + 1 < path.size(); ++i) {
         const float length = glm::length(path[i + 1] - path[i]);

@@ -66,6 +66,21 @@ TEST(CameraConstants, DeviceDepthLeadsToViewDepth) {
     }
 }
 
+// Some hosts write infinity as "a hair beyond": device depth then ends a little before its far value.
+TEST(CameraConstants, NearlyInfiniteFarIsInfinite) {
+    for (const bool reversed : {false, true}) {
+        CameraSpec spec;
+        spec.reversed = reversed;
+        Camera camera = makeCamera(spec);
+        camera.clipFromView[10] += reversed ? -1e-7f : 2e-7f;  // times -1: the view looks down -z
+        Light light;
+        light.position[2] = -5000, light.rangeMetres = 100;
+        const Prepared prepared = runOnce(camera, 640, 360, {light});
+        ASSERT_TRUE(prepared.result.ok()) << prepared.result.message();
+        EXPECT_EQ(prepared.report.visible, 1u);
+    }
+}
+
 TEST(CameraConstants, CountsAndExtent) {
     PrepareDesc desc;
     const auto prepare = makePrepare(desc);

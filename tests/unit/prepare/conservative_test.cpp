@@ -100,6 +100,90 @@ TEST(Conservative, GrazingRaysOfABallAreKept) {
     EXPECT_GT(checked, 20000);
 }
 
+// The shader's own steps from a pixel's device depth to "the light reaches it", in float.
+struct ShaderPixel {
+    float viewDepth;
+    gpu::vec3 positionWs;
+};
+
+ShaderPixel shaderPixel(const gpu::GpuFrame& f, float xPx, float yPx, float device) {
+    const gpu::vec4 &d = f.viewDepthFromDevice, &m = f.viewXyFromPixel;
+    const float depth = (d.x * device + d.y) / (d.z * device + d.w);
+    const float scale = (f.pools.w & gpu::kFrameOrthographicBit) != 0 ? 1.0f : depth;
+    const float x = (xPx * m.x + m.z) * scale, y = (yPx * m.y + m.w) * scale;
+    return {depth,
+            {f.eyeWs.x + (f.axisXWs.x * x + f.axisYWs.x * y + f.axisZWs.x * depth),
+             f.eyeWs.y + (f.axisXWs.y * x + f.axisYWs.y * y + f.axisZWs.y * depth),
+             f.eyeWs.z + (f.axisXWs.z * x + f.axisYWs.z * y + f.axisZWs.z * depth)}};
+}
+
+// `light` is what phase 1 writes for a light that passes culling.
+bool shaderReaches(const gpu::GpuLight& light, const gpu::vec3& p) {
+    const float x = light.positionWs.x - p.x, y = light.positionWs.y - p.y, z = light.positionWs.z - p.z;
+    const float squared = x * x + y * y + z * z;
+    if (squared > light.rangeMetres * light.rangeMetres) return false;
+    const float along = -(x * light.directionWs.x + y * light.directionWs.y + z * light.directionWs.z);
+    return along >= light.cosOuter * std::sqrt(squared);
+}
+
+// The light as the GPU would have it, whether or not it is culled.
+gpu::GpuLight asGpuLight(const Light& light) {
+    gpu::GpuLight out = {};
+    out.positionWs = {light.position[0], light.position[1], light.position[2]};
+    out.rangeMetres = light.rangeMetres;
+    out.cosOuter = -2;
+    if (light.type == LightType::Spot) {
+        const Point d = directionOf(light);
+        out.directionWs = {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)};
+        out.cosOuter = static_cast<float>(std::cos(static_cast<double>(light.outerConeAngle)));
+    }
+    return out;
+}
+
+// Phase 2 and 3 reserve and write by masks and zBins, so a pixel that rounding puts inside a light must be kept as
+// well. Far from the origin a float step is larger than a pixel.
+TEST(Conservative, NoPixelThatTheShaderLightsIsLost) {
+    int checked = 0;
+    for (int trial = 0; trial < 120; ++trial) {
+        Random random(7000 + trial);
+        CameraSpec spec = randomCamera(random);
+        if (trial % 3 == 0) spec.eye = spec.eye + randomUnit(random) * 16000;
+        const Camera camera = makeCamera(spec);
+        std::vector<Light> lights;
+        for (int i = 0; i < 30; ++i) lights.push_back(randomLight(random, spec));
+        const Prepared prepared = runOnce(camera, 1921, 1081, lights);
+        ASSERT_TRUE(prepared.result.ok()) << prepared.result.message();
+        const auto index = indexOfHost(prepared, lights.size());
+        for (std::size_t i = 0; i < lights.size(); ++i) {
+            const gpu::GpuLight light = asGpuLight(lights[i]);
+            for (int sample = 0; sample < 100; ++sample) {
+                const Projected at = project(camera, randomPointOf(lights[i], random), 1921, 1081);
+                if (!at.onScreen) continue;
+                const float xPx = std::floor(static_cast<float>(at.xPx)) + 0.5f;
+                const float yPx = std::floor(static_cast<float>(at.yPx)) + 0.5f;
+                const auto reached = [&](float device) {
+                    return shaderReaches(light, shaderPixel(prepared.frame, xPx, yPx, device).positionWs);
+                };
+                const auto start = static_cast<float>(at.device);
+                if (!(start > 0 && start < 1) || !reached(start)) continue;
+                // The last device depth on either side that the shader still calls lit.
+                for (const float end : {std::numeric_limits<float>::min(), 1.0f}) {
+                    float in = start, out = end;
+                    for (int step = 0; step < 60 && !reached(end); ++step) {
+                        const float middle = in + (out - in) * 0.5f;
+                        (reached(middle) ? in : out) = middle;
+                    }
+                    const ShaderPixel pixel = shaderPixel(prepared.frame, xPx, yPx, in);
+                    ++checked;
+                    checkPoint(prepared, {true, xPx, yPx, pixel.viewDepth, in}, index[i], random);
+                    if (testing::Test::HasFatalFailure()) FAIL() << "trial " << trial << ", light " << i;
+                }
+            }
+        }
+    }
+    EXPECT_GT(checked, 20000);
+}
+
 // Does any of the tile's rays meet the light? Rays over a grid of pixels, points along each.
 bool tileIsReached(const CameraSpec& spec, const Camera& camera, const Light& light, std::uint32_t column,
                    std::uint32_t row, std::uint32_t width, std::uint32_t height) {

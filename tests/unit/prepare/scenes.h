@@ -171,7 +171,7 @@ inline Point randomPointOf(const Light& light, Random& random) {
 
 struct Projected {
     bool onScreen = false;
-    double xPx = 0, yPx = 0, viewDepth = 0;
+    double xPx = 0, yPx = 0, viewDepth = 0, device = 0;
 };
 
 // Through the host's matrices, as a vertex goes.
@@ -189,6 +189,7 @@ inline Projected project(const Camera& camera, Point p, double widthPx, double h
     out.xPx = (x + 1) / 2 * widthPx;
     out.yPx = (y + 1) / 2 * heightPx;
     out.viewDepth = std::abs(camera.clipFromView[15] != 0 ? view[2] : clip[3]);
+    out.device = z;
     out.onScreen = out.xPx >= 0 && out.xPx < widthPx && out.yPx >= 0 && out.yPx < heightPx && z >= 0 && z <= 1;
     return out;
 }

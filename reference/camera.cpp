@@ -45,7 +45,9 @@ CameraModel makeCameraModel(const Camera& camera, std::uint32_t widthPx, std::ui
     return model;
 }
 
-bool isBackground(const CameraModel& camera, float deviceDepth) { return deviceDepth == camera.backgroundDepth; }
+bool isBackground(const CameraModel& camera, float deviceDepth) {
+    return deviceDepth == camera.backgroundDepth;
+}
 
 Vec3 worldFromPixel(const CameraModel& camera, double xPx, double yPx, double deviceDepth) {
     return transformPoint(camera.worldFromView, viewFromPixel(camera, xPx, yPx, deviceDepth));

@@ -5,10 +5,10 @@
 // perspective or orthographic, standard or reversed depth, finite or infinite far plane, jittered, off-centre, looking
 // down its -z or its +z axis.
 // Source: the specification, Conventions, and gnomon/scene.h. View depth is the positive distance along the view axis.
-// What: the plain way. Pixel to normalised device coordinates, through the inverse matrices, divided by w. Which way the
-// camera looks is found by un-projecting two depths.
-// Limits: the matrices are taken as they are (floats widened), so a view matrix that is rigid only to 1e-3 is inverted as
-// it stands, while the library may take its transpose. Image rows run from the top, and ndc y = -1 is the top row.
+// What: the plain way. Pixel to normalised device coordinates, through the inverse matrices, divided by w. Which way
+// the camera looks is found by un-projecting two depths. Limits: the matrices are taken as they are (floats widened),
+// so a view matrix that is rigid only to 1e-3 is inverted as it stands, while the library may take its transpose. Image
+// rows run from the top, and ndc y = -1 is the top row.
 
 #include <cstdint>
 
@@ -22,14 +22,14 @@ struct CameraModel {
     std::uint32_t widthPx = 0, heightPx = 0;
     bool orthographic = false;
     bool reversed = true;
-    double forwardSign = -1;      ///< view depth = forwardSign * z of view space
+    double forwardSign = -1;  ///< view depth = forwardSign * z of view space
     double nearDeviceDepth = 1;
-    double backgroundDepth = 0;   ///< device depth of background pixels: the far value
-    double nearMetres = 0;        ///< view depth of the near plane
-    double farMetres = kInfinity; ///< view depth of the far plane
-    double maxSlope = 0;          ///< largest |view x| or |view y| on the screen, at view depth 1 if perspective
-    Vec3 eye;                     ///< origin-relative metres
-    Vec3 forward;                 ///< unit, world space
+    double backgroundDepth = 0;    ///< device depth of background pixels: the far value
+    double nearMetres = 0;         ///< view depth of the near plane
+    double farMetres = kInfinity;  ///< view depth of the far plane
+    double maxSlope = 0;           ///< largest |view x| or |view y| on the screen, at view depth 1 if perspective
+    Vec3 eye;                      ///< origin-relative metres
+    Vec3 forward;                  ///< unit, world space
 };
 
 CameraModel makeCameraModel(const Camera& camera, std::uint32_t widthPx, std::uint32_t heightPx);
@@ -51,10 +51,10 @@ struct PixelPosition {
 };
 PixelPosition pixelFromWorld(const CameraModel& camera, Vec3 positionWs);
 
-/// How far, in metres, a reconstruction in 32-bit floats may be off: in view depth, from the cancellation in the formula
-/// that turns device depth into view depth; in position, from that and from the magnitudes of the terms summed.
-/// Both with a factor of kErrorFactor over one rounding per term.
-inline constexpr double kErrorFactor = 16;
+/// How far, in metres, a reconstruction in 32-bit floats may be off: in view depth, from the cancellation in the
+/// formula that turns device depth into view depth; in position, from that and from the magnitudes of the terms summed.
+/// Both allow kErrorFactor roundings per term; plain float code stays below a sixth of that (tests/unit/reference).
+inline constexpr double kErrorFactor = 4;
 double viewDepthError(const CameraModel& camera, double deviceDepth);
 double positionError(const CameraModel& camera, Vec3 positionWs, double deviceDepth);
 

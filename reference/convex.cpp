@@ -14,7 +14,9 @@ Plane planeThrough(Vec3 a, Vec3 b, Vec3 c, Vec3 inside) {
     return plane;
 }
 
-double signedDistance(const Plane& plane, Vec3 p) { return dot(plane.normal, p) + plane.offset; }
+double signedDistance(const Plane& plane, Vec3 p) {
+    return dot(plane.normal, p) + plane.offset;
+}
 
 /// Nearest point to p on the common flat of one to three planes; false if they have none (parallel planes).
 bool projectOnto(const Plane* const* planes, int count, Vec3 p, Vec3& out) {
@@ -96,7 +98,7 @@ Verdict spotMeets(const LightModel& light, const Polyhedron& polyhedron, double 
     if (gapAfterProjections(inner, light.position, radius - 2 * margin, shrunken(polyhedron, margin)) <= 0.0)
         return Verdict::Must;
     return gapAfterProjections(cone, light.position, radius, polyhedron) > 0.01 * radius + margin ? Verdict::Never
-                                                                                                   : Verdict::May;
+                                                                                                  : Verdict::May;
 }
 
 }  // namespace

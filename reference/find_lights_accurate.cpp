@@ -6,7 +6,8 @@ namespace {
 
 /// Metres by which float arithmetic on this pair's coordinates may be off.
 double pairError(const LightModel& light, const Pixel& pixel) {
-    return pixel.positionError + 4 * kFloatRoundoff * (sumOfMagnitudes(light.position) + sumOfMagnitudes(pixel.position));
+    return pixel.positionError +
+           4 * kFloatRoundoff * (sumOfMagnitudes(light.position) + sumOfMagnitudes(pixel.position));
 }
 
 /// A ball around the tile's pixels that are not background; radius below zero if there are none.
@@ -50,8 +51,7 @@ Verdict inInfluence(const LightModel& light, const Pixel& pixel) {
 Verdict facesLight(const LightModel& light, const Pixel& pixel) {
     if (!pixel.hasFaceNormal) return Verdict::May;
     constexpr double kNormalError = 8 * kFloatRoundoff;
-    if (light.type == LightType::Directional)
-        return atLeastZero(dot(pixel.faceNormal, -light.direction), kNormalError);
+    if (light.type == LightType::Directional) return atLeastZero(dot(pixel.faceNormal, -light.direction), kNormalError);
     const Vec3 toLight = light.position - pixel.position;
     return atLeastZero(dot(pixel.faceNormal, toLight), 2 * pairError(light, pixel) + kNormalError * length(toLight));
 }
@@ -109,7 +109,8 @@ EarlyListReport checkEarlyLists(const std::vector<TileLights>& expected, const s
             if (std::find(listed.begin(), listed.end(), i) == listed.end())
                 report.findings.add("tile %zu has lost light %u", tile, i);
         const std::uint32_t told = buffers.earlyCounts[tile] >> gpu::kEarlyCastingShift;
-        if (told != casting) report.findings.add("tile %zu counts %u casting lights instead of %zu", tile, told, casting);
+        if (told != casting)
+            report.findings.add("tile %zu counts %u casting lights instead of %zu", tile, told, casting);
     }
     return report;
 }

@@ -24,8 +24,9 @@ void checkTile(ApproximateReport& report, std::size_t tile, const TileLights& wa
 
 }  // namespace
 
-ApproximateReport checkApproximate(const PixelGrid& grid, const std::vector<TileLights>& expected, std::size_t lightCount,
-                                   std::span<const std::uint32_t> groupMasks, const ListBuffers& buffers) {
+ApproximateReport checkApproximate(const PixelGrid& grid, const std::vector<TileLights>& expected,
+                                   std::size_t lightCount, std::span<const std::uint32_t> groupMasks,
+                                   const ListBuffers& buffers) {
     ApproximateReport report;
     const std::size_t groups = std::size_t(grid.groupsX) * grid.groupsY;
     if (groupMasks.size() < groups * gpu::kLightMaskEntryWords) {
@@ -36,8 +37,8 @@ ApproximateReport checkApproximate(const PixelGrid& grid, const std::vector<Tile
     for (std::uint32_t tileY = 0; tileY < grid.tilesY; ++tileY) {
         for (std::uint32_t tileX = 0; tileX < grid.tilesX; ++tileX) {
             const std::size_t tile = std::size_t(tileY) * grid.tilesX + tileX;
-            const std::size_t group = std::size_t(tileY / gpu::kTileGroupSizeTiles) * grid.groupsX +
-                                      tileX / gpu::kTileGroupSizeTiles;
+            const std::size_t group =
+                std::size_t(tileY / gpu::kTileGroupSizeTiles) * grid.groupsX + tileX / gpu::kTileGroupSizeTiles;
             checkTile(report, tile, expected[tile],
                       groupMasks.subspan(group * gpu::kLightMaskEntryWords, gpu::kLightMaskEntryWords), buffers);
             reaching[group].insert(expected[tile].must.begin(), expected[tile].must.end());
@@ -50,7 +51,8 @@ ApproximateReport checkApproximate(const PixelGrid& grid, const std::vector<Tile
             if (!maskHas(entry, i)) continue;
             ++report.groupBits;
             report.groupBitsNeeded += reaching[group].count(i);
-            if (i >= lightCount) report.findings.add("tile group %zu has the bit of light %u of %zu", group, i, lightCount);
+            if (i >= lightCount)
+                report.findings.add("tile group %zu has the bit of light %u of %zu", group, i, lightCount);
         }
     }
     return report;

@@ -18,9 +18,13 @@ enum class Verdict {
 };
 
 /// Both hold.
-inline Verdict both(Verdict a, Verdict b) { return a < b ? a : b; }
+inline Verdict both(Verdict a, Verdict b) {
+    return a < b ? a : b;
+}
 /// At least one holds.
-inline Verdict either(Verdict a, Verdict b) { return a < b ? b : a; }
+inline Verdict either(Verdict a, Verdict b) {
+    return a < b ? b : a;
+}
 /// Is `value` at least zero, where it is known to within `margin` (0 or more)?
 inline Verdict atLeastZero(double value, double margin) {
     if (value >= margin) return Verdict::Must;

@@ -11,7 +11,9 @@ constexpr double kMaxPositionErrorPx = 2.0;
 constexpr double kNearestLinearDepth = 1e-4;
 constexpr Visibility kLit = {1, 1}, kDark = {0, 0}, kAny = {0, 1};
 
-Visibility merge(Visibility a, Visibility b) { return {std::min(a.min, b.min), std::max(a.max, b.max)}; }
+Visibility merge(Visibility a, Visibility b) {
+    return {std::min(a.min, b.min), std::max(a.max, b.max)};
+}
 
 Visibility compareTexel(const ShadowViewModel& view, const AtlasCopy& atlas, int x, int y, double deviceDepth,
                         double depthError) {
@@ -19,9 +21,12 @@ Visibility compareTexel(const ShadowViewModel& view, const AtlasCopy& atlas, int
     // How much farther from the light the stored surface is.
     const double behind = view.reversed ? deviceDepth - stored : stored - deviceDepth;
     switch (atLeastZero(behind, depthError)) {
-        case Verdict::Must: return kLit;
-        case Verdict::Never: return kDark;
-        case Verdict::May: return kAny;
+        case Verdict::Must:
+            return kLit;
+        case Verdict::Never:
+            return kDark;
+        case Verdict::May:
+            return kAny;
     }
     return kAny;
 }
@@ -33,7 +38,8 @@ Visibility hardAt(const ShadowViewModel& view, const AtlasCopy& atlas, double xP
     };
     Visibility result = {1, 0};
     for (int y = texel(yPx - errorPx, view.yPx, view.heightPx); y <= texel(yPx + errorPx, view.yPx, view.heightPx); ++y)
-        for (int x = texel(xPx - errorPx, view.xPx, view.widthPx); x <= texel(xPx + errorPx, view.xPx, view.widthPx); ++x)
+        for (int x = texel(xPx - errorPx, view.xPx, view.widthPx); x <= texel(xPx + errorPx, view.xPx, view.widthPx);
+             ++x)
             result = merge(result, compareTexel(view, atlas, x, y, deviceDepth, depthError));
     return result;
 }
@@ -73,8 +79,8 @@ Visibility pcfExactlyAt(const ShadowViewModel& view, const AtlasCopy& atlas, int
     return {sum.min / all, sum.max / all};
 }
 
-/// The ends of [px - error, px + error], clamped to where the kernel fits, and the texel centres between them: the filter
-/// is bilinear between texel centres, so it takes its extremes there.
+/// The ends of [px - error, px + error], clamped to where the kernel fits, and the texel centres between them: the
+/// filter is bilinear between texel centres, so it takes its extremes there.
 std::vector<double> extremePositions(double px, double error, int radius, int first, int size) {
     const double lowest = first + radius + 0.5, highest = first + size - radius - 0.5;
     const double from = std::clamp(px - error, lowest, highest), to = std::clamp(px + error, lowest, highest);
@@ -84,8 +90,8 @@ std::vector<double> extremePositions(double px, double error, int radius, int fi
     return result;
 }
 
-Visibility pcfAt(const ShadowViewModel& view, const AtlasCopy& atlas, int radius, double xPx, double yPx, double errorPx,
-                 double deviceDepth, double depthError) {
+Visibility pcfAt(const ShadowViewModel& view, const AtlasCopy& atlas, int radius, double xPx, double yPx,
+                 double errorPx, double deviceDepth, double depthError) {
     Visibility result = {1, 0};
     for (const double y : extremePositions(yPx, errorPx, radius, view.yPx, view.heightPx))
         for (const double x : extremePositions(xPx, errorPx, radius, view.xPx, view.widthPx))
@@ -194,7 +200,8 @@ Visibility visibility(const LightModel& light, const Pixel& pixel, const ShadowI
     for (const std::uint32_t face : faces(light, pixel)) {
         const ShadowViewModel& view = input.views[light.firstShadowView + face];
         if (mayFace) result = merge(result, sampleView(view, light, pixel, facing, 1.0, input));
-        if (mayFaceAway && pixel.subsurface) result = merge(result, sampleView(view, light, pixel, facing, -1.0, input));
+        if (mayFaceAway && pixel.subsurface)
+            result = merge(result, sampleView(view, light, pixel, facing, -1.0, input));
     }
     if (mayFaceAway && !pixel.subsurface) result = merge(result, kDark);
     return result;

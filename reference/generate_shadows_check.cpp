@@ -42,7 +42,8 @@ void checkSlot(ShadowReport& report, const ListBuffers& buffers, std::size_t til
                std::uint32_t slot, const std::vector<Voter>& all) {
     for (const Voter& voter : all) {
         if (!voter.surely) continue;
-        const int q = storedVisibility(buffers, slot, voter.x % gpu::kShadowTileSizePx, voter.y % gpu::kShadowTileSizePx);
+        const int q =
+            storedVisibility(buffers, slot, voter.x % gpu::kShadowTileSizePx, voter.y % gpu::kShadowTileSizePx);
         ++report.bytes;
         if (voter.stored.holds(q)) {
             report.exactBytes += !voter.stored.ambiguous();

@@ -3,7 +3,8 @@
 //
 // Source: the specification, Hierarchical depth; the paper, section 2.2, footnote 1.
 // What: a loop over the tile's pixels. A tile of background alone has minimum +infinity above maximum -infinity.
-// Limits: checks the library's own pyramid (view depths), not one that a host gave (device depths, background included).
+// Limits: checks the library's own pyramid (view depths), not one that a host gave (device depths, background
+// included).
 
 #include <span>
 

@@ -24,9 +24,12 @@ bool near(gpu::vec3 a, Vec3 b, double relative, double absolute) {
 
 std::uint32_t typeNumber(LightType type) {
     switch (type) {
-        case LightType::Point: return gpu::kLightPoint;
-        case LightType::Spot: return gpu::kLightSpot;
-        case LightType::Directional: return gpu::kLightDirectional;
+        case LightType::Point:
+            return gpu::kLightPoint;
+        case LightType::Spot:
+            return gpu::kLightSpot;
+        case LightType::Directional:
+            return gpu::kLightDirectional;
     }
     return 0;
 }

@@ -12,8 +12,10 @@ std::uint32_t reservedEntries(const ListBuffers& buffers, std::size_t tile) {
     switch (buffers.reservation) {
         case gpu::kReserveAccurate:
             return gpu::roundUpToEarlyWord(buffers.earlyCounts[tile] & gpu::kEarlyCountMask);
-        case gpu::kReserveFixed: return gpu::roundUpToEarlyWord(buffers.fixedEntries);
-        default: return gpu::roundUpToEarlyWord(buffers.approximateCounts[tile]);
+        case gpu::kReserveFixed:
+            return gpu::roundUpToEarlyWord(buffers.fixedEntries);
+        default:
+            return gpu::roundUpToEarlyWord(buffers.approximateCounts[tile]);
     }
 }
 
@@ -70,8 +72,7 @@ void checkFinal(StructureReport& report, const ListBuffers& buffers, std::size_t
                 report.findings.add("tile %zu, light %u: slot %u is beyond the pool's %u", tile, entry.light,
                                     entry.slotOrFlag, buffers.visibilitySlots);
             const auto [owner, fresh] = slotOwner.emplace(entry.slotOrFlag, tile);
-            if (!fresh)
-                report.findings.add("tiles %zu and %zu share slot %u", owner->second, tile, entry.slotOrFlag);
+            if (!fresh) report.findings.add("tiles %zu and %zu share slot %u", owner->second, tile, entry.slotOrFlag);
         } else if (entry.slotOrFlag != gpu::kSlotAllLit) {
             report.findings.add("tile %zu, light %u: flag %x", tile, entry.light, entry.slotOrFlag);
         }
@@ -117,7 +118,9 @@ std::vector<FinalEntry> finalEntries(const ListBuffers& buffers, std::size_t til
     return result;
 }
 
-bool isSlot(std::uint32_t slotOrFlag) { return slotOrFlag < gpu::kMaxVisibilitySlots; }
+bool isSlot(std::uint32_t slotOrFlag) {
+    return slotOrFlag < gpu::kMaxVisibilitySlots;
+}
 
 std::uint8_t storedVisibility(const ListBuffers& buffers, std::uint32_t slot, std::uint32_t x, std::uint32_t y) {
     const std::uint32_t lane = gpu::mortonLane(x, y);

@@ -1,13 +1,13 @@
 #pragma once
 // The light lists and their pools: decoding, and whether their structure is sound.
 //
-// Problem: tiles share one pool of list entries and one of visibility slots, given out by atomics. Two tiles that overlap,
-// or an entry that names a slot of another, would be hard to see in a picture.
-// Source: the paper, sections 2.2.2, 2.3.1 and 2.4.1; the specification, slips 2 to 4 and Overflow; gpu_interface/packing.h.
-// What: a span [SlotID, SlotID + reserved) per tile, where reserved is the approximate count, the early count or a fixed
-// number, rounded up to whole early words. The early list keeps three 10-bit indices per word from SlotID / 3 on; the
-// final list one word per entry from SlotID on.
-// Limits: counts and flags only; whether the right lights are listed is checked by the rooms of phases 2 to 4.
+// Problem: tiles share one pool of list entries and one of visibility slots, given out by atomics. Two tiles that
+// overlap, or an entry that names a slot of another, would be hard to see in a picture. Source: the paper,
+// sections 2.2.2, 2.3.1 and 2.4.1; the specification, slips 2 to 4 and Overflow; gpu_interface/packing.h. What: a span
+// [SlotID, SlotID + reserved) per tile, where reserved is the approximate count, the early count or a fixed number,
+// rounded up to whole early words. The early list keeps three 10-bit indices per word from SlotID / 3 on; the final
+// list one word per entry from SlotID on. Limits: counts and flags only; whether the right lights are listed is checked
+// by the rooms of phases 2 to 4.
 
 #include <cstdint>
 #include <span>
@@ -25,13 +25,13 @@ struct ListBuffers {
     std::span<const std::uint32_t> approximateCounts;
     std::span<const std::uint32_t> earlyList;
     std::span<const std::uint32_t> earlyCounts;
-    std::span<const std::uint32_t> finalList;    ///< empty: phase 4 has not run
+    std::span<const std::uint32_t> finalList;  ///< empty: phase 4 has not run
     std::span<const std::uint32_t> finalCounts;
     std::span<const std::uint32_t> visibility;
     std::uint32_t listEntries = 0;      ///< capacity
     std::uint32_t visibilitySlots = 0;  ///< capacity
     std::uint32_t reservation = gpu::kReserveApproximate;
-    std::uint32_t fixedEntries = 0;     ///< for kReserveFixed
+    std::uint32_t fixedEntries = 0;  ///< for kReserveFixed
 };
 
 struct FinalEntry {
@@ -53,11 +53,11 @@ struct StructureReport {
     std::size_t reservedEntries = 0;  ///< of tiles with space
     std::size_t usedSlots = 0;
     std::size_t evaluateEntries = 0;
-    std::size_t evaluateTiles = 0;    ///< tiles with kFinalEvaluateBit
+    std::size_t evaluateTiles = 0;  ///< tiles with kFinalEvaluateBit
 };
-/// Spans are disjoint, in the pool and multiples of three; lights are ascending, unique and below `lightCount`; slots are
-/// unique over the frame and below capacity; flags are ALL_LIT or EVALUATE; the final list's lights are in the early list;
-/// kFinalEvaluateBit is set exactly where a tile has an EVALUATE entry, or no list space.
+/// Spans are disjoint, in the pool and multiples of three; lights are ascending, unique and below `lightCount`; slots
+/// are unique over the frame and below capacity; flags are ALL_LIT or EVALUATE; the final list's lights are in the
+/// early list; kFinalEvaluateBit is set exactly where a tile has an EVALUATE entry, or no list space.
 StructureReport checkStructure(const ListBuffers& buffers, std::size_t lightCount);
 
 /// kEvaluateTiles: a GpuEvaluateHead and then tile coordinates (y << 16 | x). Holds exactly the tiles with

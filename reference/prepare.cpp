@@ -15,8 +15,8 @@ double marginOf(const LightModel& light, const CameraModel& camera) {
 double nearestViewDepth(const LightModel& light, const CameraModel& camera, bool exact) {
     const double centre = viewDepth(camera, light.position);
     if (!exact || light.type != LightType::Spot) return centre - light.rangeMetres;
-    // Toward the camera, the sector reaches farthest with its cap if the cone holds that direction, else with the rim of
-    // the cap nearest to that direction, or its apex.
+    // Toward the camera, the sector reaches farthest with its cap if the cone holds that direction, else with the rim
+    // of the cap nearest to that direction, or its apex.
     const double cosine = dot(light.direction, -camera.forward);
     const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
     if (angle <= light.outerAngle) return centre - light.rangeMetres;
@@ -41,7 +41,9 @@ std::size_t outOfOrder(const std::vector<LightModel>& lights, const CameraModel&
     return errors;
 }
 
-double binStart(double nearMetres, double binsPerMetre, std::uint32_t bin) { return nearMetres + bin / binsPerMetre; }
+double binStart(double nearMetres, double binsPerMetre, std::uint32_t bin) {
+    return nearMetres + bin / binsPerMetre;
+}
 
 Verdict meetsBins(const LightModel& light, const CameraModel& camera, double from, double to) {
     const double nearMetres = std::max(from, camera.nearMetres);
@@ -67,16 +69,20 @@ BinRange requiredBins(const LightModel& light, const CameraModel& camera, double
     int low = 0, high = count - 1;
     while (low < high) {  // smallest b with "reaches [0, b]"
         const int middle = (low + high) / 2;
-        if (reaches(0, middle)) high = middle;
-        else low = middle + 1;
+        if (reaches(0, middle))
+            high = middle;
+        else
+            low = middle + 1;
     }
     BinRange range;
     range.first = low;
     high = count - 1;
     while (low < high) {  // largest b with "reaches [b, last]"
         const int middle = (low + high + 1) / 2;
-        if (reaches(middle, count - 1)) low = middle;
-        else high = middle - 1;
+        if (reaches(middle, count - 1))
+            low = middle;
+        else
+            high = middle - 1;
     }
     range.last = low;
     return range;
@@ -131,7 +137,8 @@ VisibleReport checkVisibleLights(const std::vector<LightModel>& all, const std::
         const Verdict verdict = isVisible(all[i], camera);
         report.must += verdict == Verdict::Must;
         report.may += verdict == Verdict::May;
-        if (verdict == Verdict::Must && !listed[i] && !full) report.findings.add("visible host light %zu is missing", i);
+        if (verdict == Verdict::Must && !listed[i] && !full)
+            report.findings.add("visible host light %zu is missing", i);
         if (verdict == Verdict::Never && listed[i]) {
             ++report.surplus;
             if (all[i].lightFade <= 0.0) report.findings.add("host light %zu has faded away but is in the list", i);
@@ -143,7 +150,8 @@ VisibleReport checkVisibleLights(const std::vector<LightModel>& all, const std::
     std::size_t best = ordered.size();
     for (const bool exact : {false, true})
         for (const bool clamped : {false, true}) best = std::min(best, outOfOrder(ordered, camera, exact, clamped));
-    if (best > 0 && ordered.size() > 1) report.findings.add("no sort key explains the order: %zu places out of order", best);
+    if (best > 0 && ordered.size() > 1)
+        report.findings.add("no sort key explains the order: %zu places out of order", best);
     return report;
 }
 
@@ -210,9 +218,9 @@ CoverReport checkTileLightMasks(const std::vector<LightModel>& lights, const Cam
         for (std::uint32_t x = 0; x < tilesX; ++x) {
             const std::size_t tile = std::size_t(y) * tilesX + x;
             const auto entry = words.subspan(tile * gpu::kLightMaskEntryWords, gpu::kLightMaskEntryWords);
-            const Polyhedron piece = viewPiece(
-                camera, x * size, y * size, std::min<double>((x + 1) * size, camera.widthPx),
-                std::min<double>((y + 1) * size, camera.heightPx), camera.nearMetres, camera.farMetres);
+            const Polyhedron piece =
+                viewPiece(camera, x * size, y * size, std::min<double>((x + 1) * size, camera.widthPx),
+                          std::min<double>((y + 1) * size, camera.heightPx), camera.nearMetres, camera.farMetres);
             checkStrayBits(report.findings, entry, tile, firstRanged, static_cast<std::uint32_t>(lights.size()));
             for (std::uint32_t i = firstRanged; i < lights.size(); ++i) {
                 const Verdict verdict = meets(lights[i], piece, marginOf(lights[i], camera));

@@ -1,13 +1,13 @@
 #pragma once
 // Phase 1, Prepare: what its four outputs must hold.
 //
-// Problem: phase 1 culls, sorts, and marks lights in zBins and tile light masks by its own fast bounds. Whatever it does,
-// a light whose volume meets a piece of the view must be found there.
-// Source: the specification, Phase 1; the paper, section 2.1.
-// What: every light is held against every mask tile and zBin by the exact convex test of convex.h. A light that is missing
-// where it must be is an error; one that is marked where it can never be is surplus, counted and reported as a share.
-// Limits: the masks' brute force costs (tiles x lights) tests, so views of up to some hundred pixels a side are right for
-// it. The volume is that inside the view, between near and far plane: phase 1 may mark more, never less.
+// Problem: phase 1 culls, sorts, and marks lights in zBins and tile light masks by its own fast bounds. Whatever it
+// does, a light whose volume meets a piece of the view must be found there. Source: the specification, Phase 1; the
+// paper, section 2.1. What: every light is held against every mask tile and zBin by the exact convex test of convex.h.
+// A light that is missing where it must be is an error; one that is marked where it can never be is surplus, counted
+// and reported as a share. Limits: the masks' brute force costs (tiles x lights) tests, so views of up to some hundred
+// pixels a side are right for it. The volume is that inside the view, between near and far plane: phase 1 may mark
+// more, never less.
 
 #include <span>
 
@@ -20,10 +20,10 @@ namespace gnomon::reference {
 /// away, and those that no receiver's mask can meet, do not.
 Verdict isVisible(const LightModel& light, const CameraModel& camera);
 
-/// Which lights are in the list, and in which order: every light that must be visible is there (unless the list is full),
-/// none twice, directional lights first, the others by nearest view depth.
-/// Nearest view depth is that of the ball or of the exact ball-and-cone, clamped to the near plane or not: one of these
-/// four keys must explain the whole order. Ties by the host's index.
+/// Which lights are in the list, and in which order: every light that must be visible is there (unless the list is
+/// full), none twice, directional lights first, the others by nearest view depth. Nearest view depth is that of the
+/// ball or of the exact ball-and-cone, clamped to the near plane or not: one of these four keys must explain the whole
+/// order. Ties by the host's index.
 struct VisibleReport {
     Findings findings;
     std::size_t must = 0, may = 0;  ///< of all lights
@@ -45,7 +45,8 @@ struct CoverReport {
 CoverReport checkZBins(const std::vector<LightModel>& lights, const CameraModel& camera,
                        std::span<const std::uint32_t> words, double nearMetres, double binsPerMetre);
 
-/// The same for one tile's depth range: the light indices that phase 2 will look at, first to last; empty if first > last.
+/// The same for one tile's depth range: the light indices that phase 2 will look at, first to last; empty if first >
+/// last.
 struct IndexRange {
     std::uint32_t first = 1, last = 0;
 };

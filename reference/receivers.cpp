@@ -6,7 +6,9 @@
 namespace gnomon::reference {
 namespace {
 
-double signNotZero(double value) { return value >= 0.0 ? 1.0 : -1.0; }
+double signNotZero(double value) {
+    return value >= 0.0 ? 1.0 : -1.0;
+}
 
 std::uint16_t store16(double e) {
     return static_cast<std::uint16_t>(std::lround(std::clamp(e * 0.5 + 0.5, 0.0, 1.0) * 65535.0));

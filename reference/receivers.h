@@ -17,9 +17,9 @@ namespace gnomon::reference {
 /// Images over the active extent only, rows from the top.
 struct Receivers {
     std::uint32_t widthPx = 0, heightPx = 0;
-    std::vector<float> depth;                  ///< device depth, one per pixel
-    std::vector<std::uint16_t> faceNormals;    ///< R16G16_UINT octahedral, two per pixel; empty: the host has none
-    std::vector<std::uint8_t> receiverFlags;   ///< R8G8_UINT: mask, bits; two per pixel; empty: mask 0xFF, no subsurface
+    std::vector<float> depth;                 ///< device depth, one per pixel
+    std::vector<std::uint16_t> faceNormals;   ///< R16G16_UINT octahedral, two per pixel; empty: the host has none
+    std::vector<std::uint8_t> receiverFlags;  ///< R8G8_UINT: mask, bits; two per pixel; empty: mask 0xFF, no subsurface
 };
 
 /// Octahedral encoding of a unit vector in two 16-bit numbers: n / (|x| + |y| + |z|), the lower half folded over, each
@@ -29,12 +29,12 @@ Vec3 decodeOctahedral(std::uint16_t x, std::uint16_t y);
 
 struct Pixel {
     bool background = true;
-    Vec3 position;             ///< origin-relative metres
-    double viewDepth = 0;      ///< metres
-    double viewDepthError = 0; ///< metres, see camera.h
-    double positionError = 0;  ///< metres, see camera.h
+    Vec3 position;              ///< origin-relative metres
+    double viewDepth = 0;       ///< metres
+    double viewDepthError = 0;  ///< metres, see camera.h
+    double positionError = 0;   ///< metres, see camera.h
     bool hasFaceNormal = false;
-    Vec3 faceNormal;           ///< unit
+    Vec3 faceNormal;  ///< unit
     std::uint8_t receiverMask = 0xFF;
     bool subsurface = false;
 };
@@ -45,7 +45,9 @@ struct PixelGrid {
     std::uint32_t groupsX = 0, groupsY = 0;  ///< tile groups
     std::vector<Pixel> pixels;
 
-    [[nodiscard]] const Pixel& at(std::uint32_t x, std::uint32_t y) const { return pixels[std::size_t(y) * widthPx + x]; }
+    [[nodiscard]] const Pixel& at(std::uint32_t x, std::uint32_t y) const {
+        return pixels[std::size_t(y) * widthPx + x];
+    }
     /// Pixels (x, y) of a shadow tile that lie inside the extent.
     struct Coordinates {
         std::uint32_t x, y;

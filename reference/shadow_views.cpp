@@ -8,7 +8,9 @@ namespace {
 
 constexpr double kRoundings = 8;
 
-Vec3 rowOf(const Mat4& a, int row) { return {a.m[row][0], a.m[row][1], a.m[row][2]}; }
+Vec3 rowOf(const Mat4& a, int row) {
+    return {a.m[row][0], a.m[row][1], a.m[row][2]};
+}
 
 struct Bounded {
     double value = 0, error = 0;
@@ -29,16 +31,21 @@ Bounded toPixels(Bounded clip, Bounded w, double sizePx, double firstPx) {
     return {ndc * scale + offset, ndcError * scale + rounding};
 }
 
-bool near(double a, double b, double tolerance) { return a == b || std::abs(a - b) <= tolerance; }
+bool near(double a, double b, double tolerance) {
+    return a == b || std::abs(a - b) <= tolerance;
+}
 
 }  // namespace
 
 DepthFromLinear depthFromLinear(double n, double f, bool orthographic, bool reversed) {
     // Standard: 0 at n, 1 at f. Reversed depth is 1 - standard depth.
     DepthFromLinear standard;
-    if (orthographic) standard = {-n / (f - n), 1.0 / (f - n)};
-    else if (std::isinf(f)) standard = {1.0, -n};
-    else standard = {f / (f - n), -f * n / (f - n)};
+    if (orthographic)
+        standard = {-n / (f - n), 1.0 / (f - n)};
+    else if (std::isinf(f))
+        standard = {1.0, -n};
+    else
+        standard = {f / (f - n), -f * n / (f - n)};
     return reversed ? DepthFromLinear{1.0 - standard.a, -standard.b} : standard;
 }
 

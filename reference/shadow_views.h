@@ -2,9 +2,9 @@
 // Shadow views and copies of the shadow atlases, in double precision.
 //
 // Source: gnomon/scene.h (ShadowView) and gpu_interface/structs.h (GpuShadowView).
-// What: the projection of a world point into a view's rectangle, its linear depth, and how far 32-bit floats may be off.
-// Limits: perspective matrices have clip.w = linear depth in metres. A texel's size is the larger of its width and height;
-// a test may set it to the GpuShadowView's own (checkShadowViews compares both).
+// What: the projection of a world point into a view's rectangle, its linear depth, and how far 32-bit floats may be
+// off. Limits: perspective matrices have clip.w = linear depth in metres. A texel's size is the larger of its width and
+// height; a test may set it to the GpuShadowView's own (checkShadowViews compares both).
 
 #include <cstdint>
 #include <span>
@@ -56,7 +56,7 @@ Findings checkShadowViews(std::span<const ShadowView> views, std::span<const gpu
 /// within `pointError` metres.
 struct ShadowPosition {
     double clipW = 0, clipWError = 0;
-    double xPx = 0, yPx = 0;             ///< atlas pixels
+    double xPx = 0, yPx = 0;  ///< atlas pixels
     double xErrorPx = 0, yErrorPx = 0;
     double linearDepth = 0, linearDepthError = 0;
 };

@@ -76,10 +76,9 @@ std::optional<Hit> trace(const Shapes& shapes, Vec3 origin, Vec3 direction, doub
     std::optional<Hit> best;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         const Shape& shape = shapes[i];
-        const std::vector<Crossing> crossings = shape.kind == Shape::Kind::Plane ? crossPlane(shape, origin, direction)
-                                                : shape.kind == Shape::Kind::Ball
-                                                    ? crossBall(shape, origin, direction)
-                                                    : crossBox(shape, origin, direction);
+        const std::vector<Crossing> crossings = shape.kind == Shape::Kind::Plane  ? crossPlane(shape, origin, direction)
+                                                : shape.kind == Shape::Kind::Ball ? crossBall(shape, origin, direction)
+                                                                                  : crossBox(shape, origin, direction);
         for (const Crossing& crossing : crossings) {
             if (crossing.distance < from || crossing.distance > to) continue;
             if (best && best->distance <= crossing.distance) continue;

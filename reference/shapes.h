@@ -30,7 +30,7 @@ using Shapes = std::vector<Shape>;
 struct Hit {
     double distance = 0;  ///< along the ray, in lengths of its direction
     Vec3 position;
-    Vec3 normal;          ///< unit, on the side that the ray comes from
+    Vec3 normal;  ///< unit, on the side that the ray comes from
     std::size_t shape = 0;
 };
 

@@ -67,13 +67,15 @@ Camera makeCamera(const CameraSetup& setup, std::uint32_t widthPx, std::uint32_t
     Camera camera;
     camera.deviceDepth = setup.reversed ? DeviceDepth::ReversedZ : DeviceDepth::StandardZ;
     toColumnMajor(viewMatrix(setup), camera.viewFromWorld);
-    // In terms of depth = sign * z: perspective clip.w = depth, clip.z = a depth + b; orthographic clip.z = a + b depth.
+    // In terms of depth = sign * z: perspective clip.w = depth, clip.z = a depth + b; orthographic clip.z = a + b
+    // depth.
     const double sign = setup.looksDownPlusZ ? 1.0 : -1.0;
     const double down = setup.looksDownPlusZ ? 1.0 : -1.0;  // view y points down or up; clip y points down
     const double farMetres = setup.infiniteFar && !setup.orthographic ? kInfinity : setup.farMetres;
     const auto [a, b] = depthFromLinear(setup.nearMetres, farMetres, setup.orthographic, setup.reversed);
     const double aspect = static_cast<double>(widthPx) / heightPx;
-    const double halfHeight = setup.orthographic ? setup.orthographicHalfHeight : std::tan(0.5 * setup.verticalFieldOfView);
+    const double halfHeight =
+        setup.orthographic ? setup.orthographicHalfHeight : std::tan(0.5 * setup.verticalFieldOfView);
     const double shiftX = setup.offCentre + 2.0 * setup.jitterXPx / widthPx;
     const double shiftY = 2.0 * setup.jitterYPx / heightPx;
     Mat4 clip;
@@ -157,14 +159,30 @@ std::vector<Light> makeLights(Random& random, const CameraSetup& camera, const L
         Light light = randomLight(random, camera, setup);
         const Vec3 forward = normalize(camera.target - camera.eye);
         switch (i) {  // the ones on purpose
-            case 0: store(camera.eye, light.position); break;
-            case 1: store(camera.eye + forward * camera.nearMetres, light.position); break;
-            case 2: store(camera.eye - forward * (0.9 * light.rangeMetres), light.position); break;
-            case 3: store(camera.eye - forward * (1.5 * light.rangeMetres), light.position); break;
-            case 4: light.rangeMetres = 0; light.intensity = 0.3f; break;
-            case 5: light.rangeMetres = 0.01f; break;
-            case 6: light.rangeMetres = 300; break;
-            default: break;
+            case 0:
+                store(camera.eye, light.position);
+                break;
+            case 1:
+                store(camera.eye + forward * camera.nearMetres, light.position);
+                break;
+            case 2:
+                store(camera.eye - forward * (0.9 * light.rangeMetres), light.position);
+                break;
+            case 3:
+                store(camera.eye - forward * (1.5 * light.rangeMetres), light.position);
+                break;
+            case 4:
+                light.rangeMetres = 0;
+                light.intensity = 0.3f;
+                break;
+            case 5:
+                light.rangeMetres = 0.01f;
+                break;
+            case 6:
+                light.rangeMetres = 300;
+                break;
+            default:
+                break;
         }
         lights.push_back(light);
     }

@@ -36,14 +36,14 @@ struct CameraSetup {
     Vec3 target{0, 1, 0};
     bool orthographic = false;
     bool reversed = true;
-    bool infiniteFar = true;    ///< perspective only
+    bool infiniteFar = true;  ///< perspective only
     bool looksDownPlusZ = false;
     double jitterXPx = 0, jitterYPx = 0;
-    double offCentre = 0;       ///< shifts the projection sideways by this much of its half-width
+    double offCentre = 0;  ///< shifts the projection sideways by this much of its half-width
     double verticalFieldOfView = 1.0;
     double orthographicHalfHeight = 5;
     double nearMetres = 0.05;
-    double farMetres = 200;     ///< unused where infinite
+    double farMetres = 200;  ///< unused where infinite
     std::string name = "perspective reversed infinite";
 };
 
@@ -60,7 +60,7 @@ Shapes makeRoom(Random& random, std::uint32_t objects = 12);
 
 struct LightSetup {
     std::uint32_t count = 50;
-    double castingShare = 0.5;   ///< of points and spots; they get firstShadowView = 0 until buildShadows() sets it
+    double castingShare = 0.5;  ///< of points and spots; they get firstShadowView = 0 until buildShadows() sets it
     double spotShare = 0.5;
     double directionalShare = 0.02;
     double maxRangeMetres = 6;

@@ -27,8 +27,8 @@ std::vector<ShadowView> viewsOf(const Light& light, const ShadowSetup& setup, bo
     for (int face = 0; face < static_cast<int>(gpu::kPointLightFaces); ++face) {
         const double sign = face % 2 == 0 ? 1.0 : -1.0;
         const Vec3 direction = {face / 2 == 0 ? sign : 0.0, face / 2 == 1 ? sign : 0.0, face / 2 == 2 ? sign : 0.0};
-        result.push_back(makeShadowView(from, direction, anyAcross(direction), widen, setup.nearMetres, farMetres, false,
-                                        reversed));
+        result.push_back(
+            makeShadowView(from, direction, anyAcross(direction), widen, setup.nearMetres, farMetres, false, reversed));
     }
     return result;
 }
@@ -99,8 +99,7 @@ void renderShadowView(const Shapes& shapes, const ShadowView& view, AtlasCopy& a
             const double ndcX = (x + 0.5) / view.widthPx * 2 - 1, ndcY = (y + 0.5) / view.heightPx * 2 - 1;
             const Vec3 origin = transformPoint(worldFromClip, {ndcX, ndcY, nearDevice});
             const Vec3 other = transformPoint(worldFromClip, {ndcX, ndcY, 0.5});
-            const double otherLinear =
-                view.orthographic ? (0.5 - depth.a) / depth.b : depth.b / (0.5 - depth.a);
+            const double otherLinear = view.orthographic ? (0.5 - depth.a) / depth.b : depth.b / (0.5 - depth.a);
             const Vec3 perMetre = (other - origin) / (otherLinear - view.nearMetres);
             const auto hit = trace(shapes, origin, perMetre, 0.0, double(view.farMetres) - view.nearMetres);
             double device = 1.0 - nearDevice;
@@ -113,14 +112,16 @@ void renderShadowView(const Shapes& shapes, const ShadowView& view, AtlasCopy& a
     }
 }
 
-TestShadows buildShadows(const Shapes& shapes, std::span<Light> lights, const ShadowSetup& setup, double rangeCutoffLux) {
+TestShadows buildShadows(const Shapes& shapes, std::span<Light> lights, const ShadowSetup& setup,
+                         double rangeCutoffLux) {
     TestShadows result;
     bool flip = false;
     for (Light& light : lights) {
         if (light.firstShadowView == kNoShadowViews || light.type == LightType::Directional) continue;
         const double range = light.rangeMetres > 0 ? light.rangeMetres : std::sqrt(light.intensity / rangeCutoffLux);
         light.firstShadowView = static_cast<std::uint32_t>(result.views.size());
-        for (const ShadowView& view : viewsOf(light, setup, setup.reversed != flip, range)) result.views.push_back(view);
+        for (const ShadowView& view : viewsOf(light, setup, setup.reversed != flip, range))
+            result.views.push_back(view);
         flip = setup.mixDepthKinds && !flip;
     }
     place(result.views, setup);

@@ -2,8 +2,9 @@
 // Seeded input for tests: shadow views of a set of lights, and atlases with the analytic scene's depth in them.
 //
 // What: every point light that is to cast gets six views, every spot one that holds its cone, packed into the atlases'
-// cells one after the other. Each texel's ray is cast through its centre in double precision and stored as device depth.
-// Texels outside every rectangle hold the nearest possible depth: a kernel that leaves its rectangle finds shadow there.
+// cells one after the other. Each texel's ray is cast through its centre in double precision and stored as device
+// depth. Texels outside every rectangle hold the nearest possible depth: a kernel that leaves its rectangle finds
+// shadow there.
 
 #include <span>
 #include <vector>
@@ -23,7 +24,7 @@ struct ShadowSetup {
     bool mixDepthKinds = false;  ///< every other light uses the other kind of depth
     bool infiniteFar = true;     ///< else far is a little beyond the light's range
     double nearMetres = 0.05;
-    double borderTexels = 2;     ///< by which point light faces reach beyond 90 degrees
+    double borderTexels = 2;  ///< by which point light faces reach beyond 90 degrees
 };
 
 struct TestShadows {

@@ -1,6 +1,6 @@
 #pragma once
-// Vectors and 4x4 matrices in double precision, as plain as can be: the oracle leans on nobody's mathematics but its own.
-// Matrices are written m[row][column] and multiply column vectors; the library's float arrays are column-major.
+// Vectors and 4x4 matrices in double precision, as plain as can be: the oracle leans on nobody's mathematics but its
+// own. Matrices are written m[row][column] and multiply column vectors; the library's float arrays are column-major.
 
 #include <algorithm>
 #include <cmath>
@@ -21,20 +21,46 @@ struct Vec4 {
     double x = 0, y = 0, z = 0, w = 0;
 };
 
-inline Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
-inline Vec3 operator*(Vec3 a, double s) { return {a.x * s, a.y * s, a.z * s}; }
-inline Vec3 operator*(double s, Vec3 a) { return a * s; }
-inline Vec3 operator/(Vec3 a, double s) { return {a.x / s, a.y / s, a.z / s}; }
-inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-inline double length(Vec3 a) { return std::sqrt(dot(a, a)); }
-inline Vec3 normalize(Vec3 a) { return a / length(a); }
+inline Vec3 operator+(Vec3 a, Vec3 b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vec3 operator-(Vec3 a, Vec3 b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vec3 operator-(Vec3 a) {
+    return {-a.x, -a.y, -a.z};
+}
+inline Vec3 operator*(Vec3 a, double s) {
+    return {a.x * s, a.y * s, a.z * s};
+}
+inline Vec3 operator*(double s, Vec3 a) {
+    return a * s;
+}
+inline Vec3 operator/(Vec3 a, double s) {
+    return {a.x / s, a.y / s, a.z / s};
+}
+inline double dot(Vec3 a, Vec3 b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline Vec3 cross(Vec3 a, Vec3 b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double length(Vec3 a) {
+    return std::sqrt(dot(a, a));
+}
+inline Vec3 normalize(Vec3 a) {
+    return a / length(a);
+}
 /// Sum of magnitudes: an upper bound of what a float dot product's terms can add up to.
-inline double sumOfMagnitudes(Vec3 a) { return std::abs(a.x) + std::abs(a.y) + std::abs(a.z); }
-inline double component(Vec3 a, int axis) { return axis == 0 ? a.x : axis == 1 ? a.y : a.z; }
-inline Vec3 vec3(const float* p) { return {p[0], p[1], p[2]}; }
+inline double sumOfMagnitudes(Vec3 a) {
+    return std::abs(a.x) + std::abs(a.y) + std::abs(a.z);
+}
+inline double component(Vec3 a, int axis) {
+    return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
+}
+inline Vec3 vec3(const float* p) {
+    return {p[0], p[1], p[2]};
+}
 
 struct Mat4 {
     double m[4][4] = {};

@@ -51,7 +51,8 @@ TEST(Camera, RoundTripsForEveryKind) {
         // Upright: the top of the picture is higher in the world.
         EXPECT_GT(worldAtViewDepth(camera, 160, 1, 5).y, worldAtViewDepth(camera, 160, 120, 5).y);
         EXPECT_GT(dot(worldAtViewDepth(camera, 320, 60, 5) - worldAtViewDepth(camera, 1, 60, 5),
-                      cross(camera.forward, {0, 1, 0})), 0);
+                      cross(camera.forward, {0, 1, 0})),
+                  0);
     }
 }
 
@@ -61,7 +62,8 @@ TEST(Camera, ViewDepthErrorBoundsFloats) {
         SCOPED_TRACE(setup.name);
         const Camera host = makeCamera(setup, 64, 64);
         const CameraModel camera = makeCameraModel(host, 64, 64);
-        const float a = host.clipFromView[10], b = host.clipFromView[14], c = host.clipFromView[11], e = host.clipFromView[15];
+        const float a = host.clipFromView[10], b = host.clipFromView[14], c = host.clipFromView[11],
+                    e = host.clipFromView[15];
         Random random(1);
         double worst = 0;
         for (int i = 0; i < 10000; ++i) {

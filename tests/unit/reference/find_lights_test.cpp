@@ -158,7 +158,8 @@ TEST_F(Frame, EarlyListErrorsAreFound) {
 TEST_F(Frame, ApproximateErrorsAreFound) {
     const std::size_t tile = fullTile();
     const auto errors = [&](const HonestBuffers& spoilt) {
-        return checkApproximate(frame.grid, expected, frame.lights.size(), spoilt.groupMasks, spoilt.view()).findings.errors;
+        return checkApproximate(frame.grid, expected, frame.lights.size(), spoilt.groupMasks, spoilt.view())
+            .findings.errors;
     };
     HonestBuffers spoilt = honest;
     spoilt.groupMasks[0] = 0;  // the words stay: they must not be looked at

@@ -186,8 +186,8 @@ TEST(GenerateShadows, ShadowOfABallIsADisk) {
     }
 }
 
-// A point light's faces: in a closed box around the lamp everything is lit, in every direction. Along the box's own edges
-// a wide kernel sees the neighbouring wall, which is nearer: those are left out.
+// A point light's faces: in a closed box around the lamp everything is lit, in every direction. Along the box's own
+// edges a wide kernel sees the neighbouring wall, which is nearer: those are left out.
 TEST(GenerateShadows, BoxAroundAPointLightIsLit) {
     ShadowSetup setup;
     setup.viewSizePx = 128;

@@ -18,10 +18,10 @@ struct Picture {
         Receivers receivers;
         receivers.widthPx = 12;
         receivers.heightPx = 9;
-        receivers.depth.assign(12 * 9, 0.0f);  // background
-        receivers.depth[0] = 0.25f;            // 2 m
-        receivers.depth[3 * 12 + 7] = 0.0625f; // 8 m
-        receivers.depth[8 * 12 + 11] = 0.5f;   // 1 m, in the last tile
+        receivers.depth.assign(12 * 9, 0.0f);   // background
+        receivers.depth[0] = 0.25f;             // 2 m
+        receivers.depth[3 * 12 + 7] = 0.0625f;  // 8 m
+        receivers.depth[8 * 12 + 11] = 0.5f;    // 1 m, in the last tile
         grid = makePixelGrid(camera, receivers);
     }
 };

@@ -25,8 +25,8 @@ struct TestFrame {
     ShadowInput shadows;
 };
 
-inline TestFrame makeTestFrame(std::uint64_t seed, std::uint32_t widthPx, std::uint32_t heightPx, std::uint32_t lightCount,
-                               const CameraSetup* setup = nullptr) {
+inline TestFrame makeTestFrame(std::uint64_t seed, std::uint32_t widthPx, std::uint32_t heightPx,
+                               std::uint32_t lightCount, const CameraSetup* setup = nullptr) {
     TestFrame frame;
     Random random(seed);
     frame.setup = setup ? *setup : randomCamera(random);
@@ -126,8 +126,7 @@ inline HonestBuffers makeHonestBuffers(const TestFrame& frame, const std::vector
         for (std::uint32_t x = 0; x < frame.grid.tilesX; ++x) {
             const TileLights& tile = expected[out.slotIds.size()];
             const std::size_t group = std::size_t(y / 8) * frame.grid.groupsX + x / 8;
-            for (const std::uint32_t i : tile.must)
-                setMaskBit(&out.groupMasks[group * gpu::kLightMaskEntryWords], i);
+            for (const std::uint32_t i : tile.must) setMaskBit(&out.groupMasks[group * gpu::kLightMaskEntryWords], i);
             fillTile(out, frame, x, y, tile.must);
         }
     }

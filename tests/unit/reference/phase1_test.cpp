@@ -1,5 +1,5 @@
-// The library's phase 1 against the oracle, for every kind of camera, over random and awkward views: no light that meets a
-// piece of the view may be missing there, and little else should be marked.
+// The library's phase 1 against the oracle, for every kind of camera, over random and awkward views: no light that
+// meets a piece of the view may be missing there, and little else should be marked.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -16,7 +16,8 @@ struct Extent {
     std::uint32_t widthPx, heightPx;
 };
 
-/// Runs the library's phase 1 and checks all of its outputs. Returns the (marked, surplus) pairs of the tile light masks.
+/// Runs the library's phase 1 and checks all of its outputs. Returns the (marked, surplus) pairs of the tile light
+/// masks.
 CoverReport checkOneView(const CameraSetup& setup, Extent extent, const std::vector<Light>& host) {
     const auto [widthPx, heightPx] = extent;
     ViewInput input;

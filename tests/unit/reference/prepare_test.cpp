@@ -51,8 +51,8 @@ TEST(Convex, MeetsAgreesWithSampling) {
             bool found = false;
             for (int i = 0; i < 3000 && !found; ++i) {
                 const Vec3 v = random.unitVector() * std::cbrt(random.uniform());
-                if (light.type == LightType::Spot &&
-                    dot(v, light.direction) < std::cos(light.outerAngle) * length(v)) continue;
+                if (light.type == LightType::Spot && dot(v, light.direction) < std::cos(light.outerAngle) * length(v))
+                    continue;
                 found = inside(piece, light.position + v * light.rangeMetres);
             }
             sampled += found;
@@ -113,7 +113,8 @@ struct Phase1 {
         masks.assign(std::size_t(tilesX) * tilesY * gpu::kLightMaskEntryWords, 0);
         for (std::uint32_t t = 0; t < tilesX * tilesY; ++t) {
             const double x = t % tilesX * 32.0, y = t / tilesX * 32.0;
-            const Polyhedron piece = viewPiece(frame.model, x, y, x + 32, y + 32, frame.model.nearMetres, frame.model.farMetres);
+            const Polyhedron piece =
+                viewPiece(frame.model, x, y, x + 32, y + 32, frame.model.nearMetres, frame.model.farMetres);
             for (std::uint32_t i = 0; i < lights.size(); ++i)
                 if (lights[i].type != LightType::Directional && meets(lights[i], piece, 1e-4) != Verdict::Never)
                     setMaskBit(&masks[t * gpu::kLightMaskEntryWords], i);
@@ -126,10 +127,12 @@ TEST(Prepare, HonestBuffersPass) {
     ASSERT_GT(phase.lights.size(), 15u);
     const VisibleReport visible = checkVisibleLights(phase.frame.lights, phase.lights, phase.frame.model);
     EXPECT_TRUE(visible.findings.ok()) << visible.findings.text();
-    const CoverReport bins = checkZBins(phase.lights, phase.frame.model, phase.zBins, phase.nearMetres, phase.binsPerMetre);
+    const CoverReport bins =
+        checkZBins(phase.lights, phase.frame.model, phase.zBins, phase.nearMetres, phase.binsPerMetre);
     EXPECT_TRUE(bins.findings.ok()) << bins.findings.text();
     EXPECT_GT(bins.required, 200u);
-    const CoverReport masks = checkTileLightMasks(phase.lights, phase.frame.model, phase.masks, phase.tilesX, phase.tilesY);
+    const CoverReport masks =
+        checkTileLightMasks(phase.lights, phase.frame.model, phase.masks, phase.tilesX, phase.tilesY);
     EXPECT_TRUE(masks.findings.ok()) << masks.findings.text();
     EXPECT_GT(masks.required, 50u);
     EXPECT_LT(masks.surplusShare(), 0.05);
@@ -174,7 +177,10 @@ TEST(Prepare, CandidatesUseStandardAndRangedEntries) {
     // The paper's figure 3a: lights 0 and 1 in the first and last bins, light 2 between.
     std::vector<std::uint32_t> words(gpu::kZBinWords, gpu::kZBinEmpty);
     for (std::uint32_t b = 0; b < gpu::kZBinCount; ++b)
-        words[b] = b < 4 ? gpu::packZBin(0, 0) : b < 8 ? gpu::packZBin(2, 2) : b < 12 ? gpu::packZBin(1, 1) : gpu::kZBinEmpty;
+        words[b] = b < 4    ? gpu::packZBin(0, 0)
+                   : b < 8  ? gpu::packZBin(2, 2)
+                   : b < 12 ? gpu::packZBin(1, 1)
+                            : gpu::kZBinEmpty;
     for (std::uint32_t b = 0; b < gpu::kZBinCount; ++b)
         words[gpu::kZBinCount + b] = gpu::packZBin(b < 4 ? 0 : b < 12 ? 1 : 0xFFFF, b < 4 ? 0 : 2);
     const auto range = [&](double from, double to) { return candidatesInDepthRange(words, 0, 1, from, to); };

@@ -38,6 +38,8 @@ int parseAndWork(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-')
+            throw UsageError(fmt::format("There is no command '{}'; gnomon --help lists them.", argv[1]));
         throw UsageError(error.what());
     }
     return work();

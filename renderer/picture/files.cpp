@@ -23,7 +23,7 @@ fs::path destinationOf(const fs::path& file) {
     const fs::file_status status = fs::status(file, error);
     if (fs::exists(status) && !fs::is_regular_file(status))
         throw std::runtime_error(fmt::format("'{}' cannot be written: it is no regular file.", file.string()));
-    const fs::path destination = fs::weakly_canonical(file, error);
+    const fs::path destination = fs::weakly_canonical(fs::absolute(file), error);
     const fs::path folder = error ? fs::path() : destination.parent_path();
     if (folder.empty() || !fs::is_directory(folder, error))
         throw std::runtime_error(fmt::format("'{}' cannot be written: its folder does not exist.", file.string()));

@@ -35,9 +35,7 @@ Picture gradient(std::uint32_t width, std::uint32_t height) {
 }
 
 HdrPicture grey(std::uint32_t width, float value) {
-    HdrPicture picture{width, 1, {}};
-    for (std::uint32_t i = 0; i < width; ++i) picture.rgba.insert(picture.rgba.end(), {value, value, value, 1.0f});
-    return picture;
+    return {width, 1, std::vector<float>(std::size_t{4} * width, value)};
 }
 
 std::size_t filesIn(const fs::path& folder) {
@@ -153,6 +151,7 @@ TEST_F(PictureFiles, ExrIsWritten) {
 TEST_F(PictureFiles, UnwritablePlacesAreFoundBeforehand) {
     EXPECT_NO_THROW(checkWritable(folder_ / "new.png"));
     EXPECT_EQ(filesIn(folder_), 0u);
+    EXPECT_NO_THROW(checkWritable("a_new_name_without_folder.png"));
     EXPECT_THROW(checkWritable(folder_ / "missing" / "new.png"), std::runtime_error);
     EXPECT_THROW(checkWritable(folder_), std::runtime_error);
     EXPECT_THROW(checkWritable(""), std::runtime_error);

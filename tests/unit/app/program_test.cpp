@@ -1,0 +1,169 @@
+// The command line: exit codes and what is said on stderr. Nothing that is refused may start long work, leave a file
+// behind or print anything on stdout.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "renderer/picture/picture.h"
+#include "unit/app/program.h"
+
+namespace gnomon::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Program : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+        std::replace(name.begin(), name.end(), '/', '_');
+        folder_ = fs::path(testing::TempDir()) / ("gnomon_app_" + name);
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    Outcome run(const std::string& arguments) { return runProgram(folder_, arguments); }
+
+    void expectRefused(const std::string& arguments, int exitCode) {
+        const Outcome result = run(arguments);
+        EXPECT_EQ(result.exitCode, exitCode) << arguments << "\n" << result.err;
+        EXPECT_TRUE(isOneSentence(result.err)) << arguments << "\n" << result.err;
+        EXPECT_EQ(result.out, "") << arguments;
+    }
+
+    void expectGood(const std::string& arguments) {
+        const Outcome result = run(arguments);
+        EXPECT_EQ(result.exitCode, 0) << arguments << "\n" << result.out << result.err;
+    }
+
+    nlohmann::json readJson(const char* name) { return nlohmann::json::parse(std::ifstream(folder_ / name)); }
+
+    fs::path folder_;
+};
+
+TEST_F(Program, HelpAndVersionAreGood) {
+    for (const char* arguments : {"--help", "--version", "render --help", "bench --help", "compare --help",
+                                  "devices --help", "scenes --help"}) {
+        const Outcome result = run(arguments);
+        EXPECT_EQ(result.exitCode, 0) << arguments;
+        EXPECT_NE(result.out, "") << arguments;
+        EXPECT_EQ(result.err, "") << arguments;
+    }
+}
+
+TEST_F(Program, ListsScenesAndDevices) {
+    EXPECT_NE(run("scenes").out.find("courtyard"), std::string::npos);
+    const Outcome devices = run("devices --json");
+    EXPECT_EQ(devices.exitCode, 0);
+    EXPECT_TRUE(nlohmann::json::parse(devices.out).is_array());
+    EXPECT_EQ(run("devices").exitCode, 0);
+}
+
+TEST_F(Program, WrongUsageIsRefused) {
+    for (const char* arguments :
+         {"", "nosuch", "render --bogus", "render one two", "render --lights -1", "render --lights 100001",
+          "render --lights 1e9", "render --lights 1000000000", "render --seed -1", "render --frames 0",
+          "render --filter pcss", "render --filter soft", "render --pcf-radius 0", "render --pcf-radius 4",
+          "render --shadows never", "render --exposure nan", "render --exposure 1e9", "render --atlas 100",
+          "render --subgroup-size 5", "render --list-entries -1", "render --reservation none", "render --depth odd",
+          "bench --variants never", "bench --variants inline,inline", "bench --frames 0", "compare one.png",
+          "compare one.png two.png", "compare one.png two.png --tolerance 256", "devices extra"})
+        expectRefused(arguments, 2);
+}
+
+TEST_F(Program, SizesOfNothingAndAbsurdSizesAreRefused) {
+    for (const char* size : {"0x0", "0x64", "64x0", "16385x64", "64x16385", "4294967297x64", "-64x64", "64", "64x",
+                             "x64", "64x64x64", "axb", "1e3x64", "' 64x64'", "''"})
+        expectRefused(std::string("render --size ") + size, 2);
+}
+
+TEST_F(Program, WrongScenesAreRefused) {
+    for (const char* scene : {"nosuch", "''", "missing.glb", "missing/missing.gltf", ".", "/dev/null"})
+        expectRefused(std::string("render ") + scene, 2);
+}
+
+TEST_F(Program, MalformedFilesAreRefused) {
+    // A GLB header that promises a megabyte, cut off within its first chunk.
+    const std::string glb("glTF\x02\x00\x00\x00\x00\x00\x10\x00\xE0\xFF\x0F\x00JSON{\"asset\":{\"ver", 35);
+    std::ofstream(folder_ / "cut.glb", std::ios::binary) << glb;
+    std::ofstream(folder_ / "header.glb", std::ios::binary) << glb.substr(0, 7);
+    std::ofstream(folder_ / "empty.glb", std::ios::binary);
+    std::ofstream(folder_ / "text.gltf") << "{\"asset\": ";
+    std::ofstream(folder_ / "old.gltf") << "{\"asset\": {\"version\": \"1.0\"}}";
+    fs::create_directory(folder_ / "folder.glb");
+    for (const char* file : {"cut.glb", "header.glb", "empty.glb", "text.gltf", "old.gltf", "folder.glb"})
+        expectRefused(std::string("render ") + file, 2);
+}
+
+TEST_F(Program, WrongCamerasAndDevicesAreRefused) {
+    for (const char* camera : {"nosuch", "'#99'", "nan,0,0:0,0,0", "0,0,0:0,0,0", "0,inf,0:0,0,0", "0,1,2:3,4",
+                               "0,0,1:0,0,0:180", "0,0,1:0,0,0:nan"})
+        expectRefused(std::string("render boxes --camera ") + camera, 2);
+    for (const char* device : {"nosuch", "99", "99999999999999999999"})
+        expectRefused(std::string("render --device ") + device, 2);
+}
+
+TEST_F(Program, OutputsThatCannotBeWrittenAreFoundFirst) {
+    for (const char* option : {"-o", "--exr", "--stats"}) {
+        expectRefused(std::string("render ") + option + " missing/out", 1);
+        expectRefused(std::string("render ") + option + " /dev/null", 1);
+        expectRefused(std::string("render ") + option + " .", 1);
+    }
+    expectRefused("bench --json missing/out.json", 1);
+}
+
+TEST_F(Program, RendersAndDescribesAFrame) {
+    expectGood("render boxes --size 160x90 -o out.png --exr out.exr --stats out.json --frames 2");
+    const renderer::Picture picture = renderer::readPng(folder_ / "out.png");
+    EXPECT_EQ(picture.width, 160u);
+    EXPECT_EQ(picture.height, 90u);
+    EXPECT_TRUE(fs::exists(folder_ / "out.exr"));
+    const nlohmann::json json = readJson("out.json");
+    EXPECT_EQ(json["hash"], renderer::hashOf(picture));
+    EXPECT_EQ(json["lights"]["given"], 3);
+    EXPECT_EQ(json["counters"]["accurateExceedsApproximate"], 0);
+    EXPECT_GT(json["counters"]["meanShadowedLightsPerTile"], 0.0);
+    EXPECT_EQ(json["settings"]["filter"], "pcf");
+    EXPECT_EQ(json["extent"], (nlohmann::json{160, 90}));
+}
+
+TEST_F(Program, PoolsOfOneLoseNoLight) {
+    expectGood("render boxes --size 160x90 -o all.png");
+    expectGood("render boxes --size 160x90 -o one.png --stats one.json --list-entries 1 --visibility-slots 1");
+    expectGood("render boxes --size 160x90 -o slot.png --stats slot.json --visibility-slots 1");
+    EXPECT_GT(readJson("one.json")["counters"]["listOverflowTiles"], 0);
+    EXPECT_GT(readJson("slot.json")["counters"]["slotOverflowEntries"], 0);
+    expectGood("compare all.png one.png --tolerance 1");
+    expectGood("compare all.png slot.png --tolerance 1");
+}
+
+TEST_F(Program, CompareTellsPicturesApart) {
+    renderer::Picture picture{2, 2, std::vector<std::uint8_t>(12, 100)};
+    renderer::writePng(picture, folder_ / "a.png");
+    picture.rgb[4] = 103;
+    renderer::writePng(picture, folder_ / "b.png");
+    renderer::writePng({1, 1, {0, 0, 0}}, folder_ / "small.png");
+    expectGood("compare a.png a.png");
+    expectGood("compare a.png b.png --tolerance 3");
+    EXPECT_EQ(run("compare a.png b.png --tolerance 2 --diff d.png").exitCode, 1);
+    EXPECT_EQ(renderer::readPng(folder_ / "d.png").width, 2u);
+    expectRefused("compare a.png small.png", 2);
+}
+
+TEST_F(Program, BenchMeasuresVariantsInTurn) {
+    expectGood("bench boxes --size 64x64 --warmup 1 --frames 3 --variants deferred,inline,off --json out.json");
+    const nlohmann::json json = readJson("out.json");
+    EXPECT_EQ(json["frames"], 3);
+    EXPECT_EQ(json["variants"].size(), 3u);
+    EXPECT_GT(json["variants"]["inline"]["shadowPhasesAndLighting"]["medianMs"], 0.0);
+    EXPECT_GT(json["ratios"]["deferred/inline"]["ofMedians"], 0.0);
+    EXPECT_NE(json["commit"], "");
+}
+
+}  // namespace
+}  // namespace gnomon::app

@@ -13,8 +13,9 @@
 //
 // Margins. The GPU tests pixels in float: positions carry errors of a few 2^-24 of the largest coordinate in play, and
 // a cone's cosine cannot tell angles nearer than 2^-24 / sin a. Each volume is widened by several times that; at 16 km
-// from the origin it is 16 mm. Limits: testing planes one by one keeps a volume that misses the frustum only past an
-// edge or a corner; the tile masks then find it nowhere.
+// from the origin it is 16 mm.
+// Limits: testing planes one by one keeps a volume that misses the frustum only past an edge or a corner; the tile
+// masks then find it nowhere.
 
 #include "prepare/light_volume.h"
 

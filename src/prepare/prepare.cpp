@@ -5,9 +5,11 @@
 
 #include "gnomon/prepare.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <new>
+#include <utility>
 #include <vector>
 
 #include "gpu_interface/numbers.h"

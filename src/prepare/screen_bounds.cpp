@@ -3,7 +3,7 @@
 // Problem: find the 32x32-pixel tiles that a light's volume may touch: never one too few, and few too many.
 // Source: exact bounds of a ball under perspective are known from Mara and McGuire, "2D Polyhedral Bounds of a Clipped,
 // Perspective-Projected 3D Sphere" (2013); the derivation below is our own and goes row by row.
-// Plain way: project a bounding box: twice the tiles, and wrong where a corner is behind the eye.
+// Plain way: project a bounding box: loose, and wrong where a corner is behind the eye.
 //
 // What we do. A ball cut off at the near plane is convex and in front of the eye, so its image is convex. Therefore the
 // largest u within a row is at the row's upper boundary, at its lower boundary, or at the image's rightmost point if
@@ -15,7 +15,8 @@
 //     else the corner        (x + sqrt(p^2 - (near - s)^2)) / near    where the near plane cuts the disc,
 //
 // and mirrored for the smallest. L is the same for every boundary: it is the length of the eye's tangent to the ball.
-// So a row costs one or two square roots, in a loop over boundaries without branches, which compilers vectorise.
+// So a row costs one or two square roots, in a loop over boundaries without branches. (Vectorised, which GCC does only
+// under -fno-math-errno, the whole phase gains a mere 5 %: an AMD EPYC of family 26, GCC 12. So no flag is set.)
 // Spots are cut further by straight lines (cone_outline.cpp). A light that covers all four corners of the screen covers
 // all of it, by convexity, and writes no rows.
 //

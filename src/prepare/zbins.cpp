@@ -1,5 +1,5 @@
-// zBins. Source: the paper, section 2.1.1; the binning itself is from Drobot's "Improved Culling for Tiled and
-// Clustered Rendering" (2017), which the paper builds on.
+// zBins. Source: the paper, section 2.1.1. Binning sorted lights by depth is also known from Drobot, "Improved Culling
+// for Tiled and Clustered Rendering" (2017); the ranged table is the paper's.
 //
 // Problem: reject lights by depth with two look-ups. Lights are sorted by nearest depth, so a slice of depth needs the
 // lowest and highest index only. For a range of slices the two end slices do not do: a light may lie wholly between

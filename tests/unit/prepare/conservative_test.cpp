@@ -140,6 +140,17 @@ gpu::GpuLight asGpuLight(const Light& light) {
     return out;
 }
 
+// The last device depth from start towards end that the shader still calls lit.
+template <class Reached>
+float lastReached(float start, float end, Reached&& reached) {
+    float in = start, out = end;
+    for (int step = 0; step < 60 && !reached(end); ++step) {
+        const float middle = in + (out - in) * 0.5f;
+        (reached(middle) ? in : out) = middle;
+    }
+    return in;
+}
+
 // Phase 2 and 3 reserve and write by masks and zBins, so a pixel that rounding puts inside a light must be kept as
 // well. Far from the origin a float step is larger than a pixel.
 TEST(Conservative, NoPixelThatTheShaderLightsIsLost) {
@@ -166,13 +177,8 @@ TEST(Conservative, NoPixelThatTheShaderLightsIsLost) {
                 };
                 const auto start = static_cast<float>(at.device);
                 if (!(start > 0 && start < 1) || !reached(start)) continue;
-                // The last device depth on either side that the shader still calls lit.
                 for (const float end : {std::numeric_limits<float>::min(), 1.0f}) {
-                    float in = start, out = end;
-                    for (int step = 0; step < 60 && !reached(end); ++step) {
-                        const float middle = in + (out - in) * 0.5f;
-                        (reached(middle) ? in : out) = middle;
-                    }
+                    const float in = lastReached(start, end, reached);
                     const ShaderPixel pixel = shaderPixel(prepared.frame, xPx, yPx, in);
                     ++checked;
                     checkPoint(prepared, {true, xPx, yPx, pixel.viewDepth, in}, index[i], random);
@@ -182,6 +188,79 @@ TEST(Conservative, NoPixelThatTheShaderLightsIsLost) {
         }
     }
     EXPECT_GT(checked, 20000);
+}
+
+// Alone, a light has bins of a few millimetres, and none of its neighbours' to hide in. Its frontmost point must be in
+// them, also where float rounding of positions (16 km from the origin) or of a narrow cone's cosine moves that point.
+void checkFrontmostPoint(const CameraSpec& spec, const Light& light, Random& random, int& checked) {
+    const Camera camera = makeCamera(spec);
+    const Prepared prepared = runOnce(camera, 2000, 1000, {light});
+    ASSERT_TRUE(prepared.result.ok()) << prepared.result.message();
+    const gpu::GpuLight asGpu = asGpuLight(light);
+    // The pixel of the volume's frontmost point; of a cone, of the nearest of many.
+    Projected best;
+    if (light.type == LightType::Point) {
+        const Point front = positionOf(light) - unit(spec.forward) * (light.rangeMetres * (1 - 1e-6));
+        best = project(camera, front, 2000, 1000);
+    }
+    for (int sample = 0; sample < 3000 && light.type == LightType::Spot; ++sample) {
+        const Projected at = project(camera, randomPointOf(light, random), 2000, 1000);
+        if (at.onScreen && (!best.onScreen || at.viewDepth < best.viewDepth)) best = at;
+    }
+    if (!best.onScreen) return;
+    const float xPx = std::floor(static_cast<float>(best.xPx)) + 0.5f,
+                yPx = std::floor(static_cast<float>(best.yPx)) + 0.5f;
+    const auto reached = [&](float device) {
+        return shaderReaches(asGpu, shaderPixel(prepared.frame, xPx, yPx, device).positionWs);
+    };
+    // Start a little behind the frontmost point.
+    for (const double step : {1e-4, 1e-3, 1e-2}) {
+        const auto start = static_cast<float>(best.device + (spec.reversed ? -1 : 1) * step * best.device);
+        if (!(start > 0 && start < 1) || !reached(start)) continue;
+        const float in = lastReached(start, spec.reversed ? 1.0f : 0.0f, reached);
+        ++checked;
+        const ShaderPixel pixel = shaderPixel(prepared.frame, xPx, yPx, in);
+        checkPoint(prepared, {true, xPx, yPx, pixel.viewDepth, in}, prepared.lights.empty() ? -1 : 0, random);
+        return;
+    }
+}
+
+TEST(Conservative, FrontmostPointFarFromTheOrigin) {
+    int checked = 0;
+    for (int trial = 0; trial < 400 && !testing::Test::HasFatalFailure(); ++trial) {
+        Random random(trial);
+        CameraSpec spec;
+        spec.eye = randomUnit(random) * 16000;
+        spec.forward = randomUnit(random);
+        Light light;
+        const Point p = spec.eye + spec.forward * uniform(random, 3, 6);
+        light.position[0] = static_cast<float>(p.x);
+        light.position[1] = static_cast<float>(p.y);
+        light.position[2] = static_cast<float>(p.z);
+        light.rangeMetres = static_cast<float>(uniform(random, 0.5, 2));
+        checkFrontmostPoint(spec, light, random, checked);
+    }
+    EXPECT_GT(checked, 200);
+}
+
+TEST(Conservative, FrontmostPointOfNarrowCones) {
+    int checked = 0;
+    for (int trial = 0; trial < 400 && !testing::Test::HasFatalFailure(); ++trial) {
+        Random random(trial);
+        CameraSpec spec;
+        spec.orthographic = true;
+        spec.halfWidth = 60, spec.halfHeight = 3, spec.nearMetres = 0.1, spec.farMetres = 8;
+        Light light;
+        light.type = LightType::Spot;
+        light.position[0] = -50, light.position[1] = static_cast<float>(uniform(random, -1, 1));
+        light.position[2] = static_cast<float>(uniform(random, -5, -3));
+        light.direction[0] = 1, light.direction[1] = static_cast<float>(uniform(random, -0.01, 0.01));
+        light.direction[2] = static_cast<float>(uniform(random, -0.01, 0.01));
+        light.rangeMetres = static_cast<float>(uniform(random, 60, 90));
+        light.outerConeAngle = static_cast<float>(uniform(random, 0.0005, 0.002));
+        checkFrontmostPoint(spec, light, random, checked);
+    }
+    EXPECT_GT(checked, 50);
 }
 
 // Does any of the tile's rays meet the light? Rays over a grid of pixels, points along each.

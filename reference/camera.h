@@ -4,11 +4,14 @@
 // Problem: a pixel and its device depth name a point of the world, for every kind of camera that the library accepts:
 // perspective or orthographic, standard or reversed depth, finite or infinite far plane, jittered, off-centre, looking
 // down its -z or its +z axis.
+//
 // Source: the specification, Conventions, and gnomon/scene.h. View depth is the positive distance along the view axis.
+//
 // What: the plain way. Pixel to normalised device coordinates, through the inverse matrices, divided by w. Which way
-// the camera looks is found by un-projecting two depths. Limits: the matrices are taken as they are (floats widened),
-// so a view matrix that is rigid only to 1e-3 is inverted as it stands, while the library may take its transpose. Image
-// rows run from the top, and ndc y = -1 is the top row.
+// the camera looks is found by un-projecting two depths.
+//
+// Limits: the matrices are taken as they are (floats widened), so a view matrix that is rigid only to 1e-3 is inverted
+// as it stands, while the library may take its transpose. Image rows run from the top, and ndc y = -1 is the top row.
 
 #include <cstdint>
 

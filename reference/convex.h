@@ -2,14 +2,17 @@
 // Does a light's volume meet a convex piece of the view?
 //
 // Problem: phase 1 must mark every mask tile and zBin that a light's volume touches. The oracle has to say so surely.
+//
 // Source: the specification, Phase 1. A light's volume is its ball of range, for a spot cut with its cone; a mask tile
 // between two view depths is a polyhedron of at most six planes.
+//
 // What: a ball meets a polyhedron iff the polyhedron's nearest point to the centre lies within the radius. The nearest
 // point is found the plain way: project the centre onto every plane, every pair's line and every triple's corner, and
 // take the nearest of those that lie inside. Spots: a point common to ball, cone and polyhedron, all slightly shrunken,
-// is looked for by projecting onto each in turn; a point that is found *is* the proof. Limits: not finding a point
-// proves nothing, so spots are `Must`, `May`, or `Never` by the ball alone or where the projections stay far apart.
-// Half-angles are below a right angle. Tens of microseconds per spot and polyhedron.
+// is looked for by projecting onto each in turn; a point that is found *is* the proof.
+//
+// Limits: not finding a point proves nothing, so spots are `Must`, `May`, or `Never` by the ball alone or where the
+// projections stay far apart. Half-angles are below a right angle. Tens of microseconds per spot and polyhedron.
 
 #include <vector>
 

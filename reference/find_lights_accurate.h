@@ -2,12 +2,14 @@
 // Phase 3, Find lights accurate: which light reaches which pixel, and so which lights a shadow tile must list.
 //
 // Source: the specification, Phase 3 and slip 7; the paper, section 2.3.
+//
 // What: for each (light, pixel), in double precision: the pixel is not background, the masks meet, the pixel is in
 // range and in the cone, and (unless it is subsurface) its face looks at a light that casts. Each is `Must`, `May` or
 // `Never` with the margin that 32-bit floats need: the pixel's own reconstruction error plus a few roundings of the
-// terms. A tile lists a light if at least one of its pixels is reached. Limits: facing is `May` where the host gave no
-// face normals. Costs lights x pixels, less what a tile's bounding ball rules out at once: some ten million pairs a
-// second.
+// terms. A tile lists a light if at least one of its pixels is reached.
+//
+// Limits: facing is `May` where the host gave no face normals. Costs lights x pixels, less what a tile's bounding ball
+// rules out at once: some ten million pairs a second.
 
 #include <span>
 

@@ -2,10 +2,13 @@
 // Phase 2, Find lights approximate: what its masks and counts must hold.
 //
 // Source: the specification, Phase 2 and slip 8; the paper, section 2.2.
+//
 // What: phase 2 may keep too many lights, never too few. A light that surely reaches a pixel of a tile (phase 3's own
 // tests, find_lights_accurate.h) must be in the light mask of the tile's group and in the tile's count, and no early
-// count may exceed the approximate one. Limits: the froxel tests themselves are not written again. How tight they are
-// is reported: counted entries against those that the exact tests would allow.
+// count may exceed the approximate one.
+//
+// Limits: the froxel tests themselves are not written again. How tight they are is reported: counted entries against
+// those that the exact tests would allow.
 
 #include "reference/find_lights_accurate.h"
 

@@ -68,7 +68,7 @@ Visibility pcfExactlyAt(const ShadowViewModel& view, const AtlasCopy& atlas, int
     for (std::size_t j = 0; j < down.weights.size(); ++j) {
         for (std::size_t i = 0; i < across.weights.size(); ++i) {
             const double weight = across.weights[i] * down.weights[j];
-            if (weight == 0.0) continue;  // may lie outside the rectangle
+            if (weight == 0.0) continue;
             const Visibility texel = compareTexel(view, atlas, across.first + static_cast<int>(i),
                                                   down.first + static_cast<int>(j), deviceDepth, depthError);
             sum.min += weight * texel.min;
@@ -79,10 +79,10 @@ Visibility pcfExactlyAt(const ShadowViewModel& view, const AtlasCopy& atlas, int
     return {sum.min / all, sum.max / all};
 }
 
-/// The ends of [px - error, px + error], clamped to where the kernel fits, and the texel centres between them: the
-/// filter is bilinear between texel centres, so it takes its extremes there.
+/// The ends of [px - error, px + error], clamped to where the kernel's support (radius + 1 to each side) fits, and the
+/// texel centres between them: the filter is bilinear between texel centres, so it takes its extremes there.
 std::vector<double> extremePositions(double px, double error, int radius, int first, int size) {
-    const double lowest = first + radius + 0.5, highest = first + size - radius - 0.5;
+    const double lowest = first + radius + 1.0, highest = first + size - radius - 1.0;
     const double from = std::clamp(px - error, lowest, highest), to = std::clamp(px + error, lowest, highest);
     std::vector<double> result = {from, to};
     for (double centre = std::floor(from) + 0.5; centre < to; centre += 1.0)

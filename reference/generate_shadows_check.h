@@ -2,11 +2,13 @@
 // Phase 4 against the oracle: final lists and visibility slots.
 //
 // Source: the specification, Phase 4, Overflow, and "Stored visibility is perceptual".
+//
 // What, for every light of a tile's early list: the tile's voting pixels (in the light's influence) each have an
 // interval of acceptable bytes (generate_shadows.h). An absent light needs 0 to be acceptable everywhere, ALL_LIT 255;
 // a slot needs each voting pixel's byte in its interval, and not surely all dark or all lit. EVALUATE stands for a slot
-// where the pool is full. Pixels that only may vote bind nothing by themselves. Limits: early lists are taken as they
-// are (find_lights_accurate.h checks them); tiles without list space have none.
+// where the pool is full. Pixels that only may vote bind nothing by themselves.
+//
+// Limits: early lists are taken as they are (find_lights_accurate.h checks them); tiles without list space have none.
 
 #include "reference/find_lights_accurate.h"
 #include "reference/generate_shadows.h"

@@ -2,7 +2,9 @@
 // Hierarchical depth: nearest and farthest view depth of every shadow tile, over its pixels that are not background.
 //
 // Source: the specification, Hierarchical depth; the paper, section 2.2, footnote 1.
+//
 // What: a loop over the tile's pixels. A tile of background alone has minimum +infinity above maximum -infinity.
+//
 // Limits: checks the library's own pyramid (view depths), not one that a host gave (device depths, background
 // included).
 

@@ -2,10 +2,13 @@
 // The lights, in double precision, from the host's own descriptions, and put into the order that phase 1 chose.
 //
 // Source: gnomon/scene.h (what each value means) and gpu_interface/structs.h (GpuLight).
+//
 // What: every later phase of the oracle works on a vector of LightModel in sorted order, so that an element's place is
 // its light index. The order comes from the GpuLight array (hostIndex); all other values come from the host's
-// description. Limits: whether a light casts is taken from the GpuLight's bit once the order is known, because phase 1
-// may drop the shadow of a light whose shadow has faded away (checkGpuLights allows no other change).
+// description.
+//
+// Limits: whether a light casts is taken from the GpuLight's bit once the order is known, because phase 1 may drop the
+// shadow of a light whose shadow has faded away (checkGpuLights allows no other change).
 
 #include <cstdint>
 #include <span>

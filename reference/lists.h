@@ -2,12 +2,16 @@
 // The light lists and their pools: decoding, and whether their structure is sound.
 //
 // Problem: tiles share one pool of list entries and one of visibility slots, given out by atomics. Two tiles that
-// overlap, or an entry that names a slot of another, would be hard to see in a picture. Source: the paper,
-// sections 2.2.2, 2.3.1 and 2.4.1; the specification, slips 2 to 4 and Overflow; gpu_interface/packing.h. What: a span
-// [SlotID, SlotID + reserved) per tile, where reserved is the approximate count, the early count or a fixed number,
-// rounded up to whole early words. The early list keeps three 10-bit indices per word from SlotID / 3 on; the final
-// list one word per entry from SlotID on. Limits: counts and flags only; whether the right lights are listed is checked
-// by the rooms of phases 2 to 4.
+// overlap, or an entry that names a slot of another, would be hard to see in a picture.
+//
+// Source: the paper, sections 2.2.2, 2.3.1 and 2.4.1; the specification, slips 2 to 4 and Overflow;
+// gpu_interface/packing.h.
+//
+// What: a span [SlotID, SlotID + reserved) per tile, where reserved is the approximate count, the early count or a
+// fixed number, rounded up to whole early words. The early list keeps three 10-bit indices per word from SlotID / 3 on;
+// the final list one word per entry from SlotID on.
+//
+// Limits: counts and flags only; whether the right lights are listed is checked by the rooms of phases 2 to 4.
 
 #include <cstdint>
 #include <span>

@@ -2,12 +2,16 @@
 // Phase 1, Prepare: what its four outputs must hold.
 //
 // Problem: phase 1 culls, sorts, and marks lights in zBins and tile light masks by its own fast bounds. Whatever it
-// does, a light whose volume meets a piece of the view must be found there. Source: the specification, Phase 1; the
-// paper, section 2.1. What: every light is held against every mask tile and zBin by the exact convex test of convex.h.
-// A light that is missing where it must be is an error; one that is marked where it can never be is surplus, counted
-// and reported as a share. Limits: the masks' brute force costs (tiles x lights) tests, so views of up to some hundred
-// pixels a side are right for it. The volume is that inside the view, between near and far plane: phase 1 may mark
-// more, never less.
+// does, a light whose volume meets a piece of the view must be found there.
+//
+// Source: the specification, Phase 1; the paper, section 2.1.
+//
+// What: every light is held against every mask tile and zBin by the exact convex test of convex.h. A light that is
+// missing where it must be is an error; one that is marked where it can never be is surplus, counted and reported as a
+// share.
+//
+// Limits: the masks' brute force costs (tiles x lights) tests, so views of up to some hundred pixels a side are right
+// for it. The volume is that inside the view, between near and far plane: phase 1 may mark more, never less.
 
 #include <span>
 

@@ -2,8 +2,10 @@
 // The receivers: what the host's depth, face-normal and receiver-flag images say about every pixel.
 //
 // Source: the specification (Conventions; Oriented depth bias: face normals) and gnomon/tiled_shadows.h (FrameDesc).
+//
 // What: CPU copies of the three images, and the pixels they describe in double precision: position, view depth, how far
 // 32-bit floats may be off, face normal, mask, subsurface.
+//
 // Limits: a face normal is decoded from the stored 16-bit pair, so quantisation is no error here. Where the host has no
 // face normals the library derives them from depth; the oracle does not, and calls what hangs on them `May`.
 

@@ -2,8 +2,11 @@
 // Shadow views and copies of the shadow atlases, in double precision.
 //
 // Source: gnomon/scene.h (ShadowView) and gpu_interface/structs.h (GpuShadowView).
+//
 // What: the projection of a world point into a view's rectangle, its linear depth, and how far 32-bit floats may be
-// off. Limits: perspective matrices have clip.w = linear depth in metres. A texel's size is the larger of its width and
+// off.
+//
+// Limits: perspective matrices have clip.w = linear depth in metres. A texel's size is the larger of its width and
 // height; a test may set it to the GpuShadowView's own (checkShadowViews compares both).
 
 #include <cstdint>

@@ -2,6 +2,7 @@
 // A few analytic shapes and the ray caster that makes test images of them.
 //
 // What: planes, balls and axis-aligned boxes, hit by the closed form, from both sides. Double precision.
+//
 // Limits: for tests; a scene is a list of shapes and every ray tries all of them.
 
 #include <cstdint>

@@ -1,8 +1,9 @@
 #pragma once
 // Seeded input for tests: cameras, lights and receivers of small analytic scenes.
 //
-// What: cameras of every kind that the library accepts, lights strewn around one, and depth, face-normal and
-// receiver-flag images made by casting a ray per pixel in double precision and storing what a host would.
+// What: cameras of every kind that the library accepts, lights strewn around one, and depth, face-normal and receiver-
+// flag images made by casting a ray per pixel in double precision and storing what a host would.
+//
 // Limits: the same seed gives the same input on every machine up to the last bit of the mathematics library.
 
 #include <cstdint>

@@ -85,7 +85,7 @@ float filterInFloats(const ShadowInput& input, const ShadowViewModel& view, floa
     if (input.filter == ShadowFilter::Hard) return lit(int(std::floor(px)), int(std::floor(py)));
     const int r = input.pcfRadius;
     const auto clampPx = [&](float p, int first, int size) {
-        return std::clamp(p, first + r + 0.5f, first + size - r - 0.5f) - 0.5f;
+        return std::clamp(p, first + r + 1.0f, first + size - r - 1.0f) - 0.5f;
     };
     px = clampPx(px, view.xPx, view.widthPx);
     py = clampPx(py, view.yPx, view.heightPx);

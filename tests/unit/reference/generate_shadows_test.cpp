@@ -82,7 +82,7 @@ TEST(Filter, StandardDepthComparesTheOtherWay) {
 TEST(Filter, PcfIsAMeanOfBilinearComparisons) {
     const HandMade m;
     for (const int radius : {1, 2, 3}) {
-        for (double x = 2 + radius + 0.5; x <= 10 - radius - 0.5; x += 0.125) {
+        for (double x = 2 + radius + 1; x <= 10 - radius - 1; x += 0.125) {
             // One axis decides: each of the 2r + 1 comparisons is lit by the share of it beyond x = 6.
             double sum = 0;
             for (int i = -radius; i <= radius; ++i) sum += std::clamp(x + i - 5.5, 0.0, 1.0);
@@ -96,10 +96,11 @@ TEST(Filter, PcfIsAMeanOfBilinearComparisons) {
 TEST(Filter, PcfStaysInTheRectangle) {
     const HandMade m;
     for (const double y : {-5.0, 1.0, 2.0, 9.0, 30.0}) {
-        EXPECT_NEAR(m.at(ShadowFilter::Pcf, 2, 100, y).min, 4.0 / 5.0, 1e-12);
-        // Radius 3 just fits 8 texels: at the right end it covers seven, of which four are lit.
-        EXPECT_NEAR(m.at(ShadowFilter::Pcf, 3, 100, y).min, 4.0 / 7.0, 1e-12);
-        EXPECT_NEAR(m.at(ShadowFilter::Pcf, 3, -100, y).max, 3.0 / 7.0, 1e-12);
+        // Radius 2 goes no farther right than x = 7: half a dark texel of five. Radius 3 just fits 8 texels, in the
+        // middle.
+        EXPECT_NEAR(m.at(ShadowFilter::Pcf, 2, 100, y).min, 3.5 / 5.0, 1e-12);
+        EXPECT_NEAR(m.at(ShadowFilter::Pcf, 3, 100, y).min, 0.5, 1e-12);
+        EXPECT_NEAR(m.at(ShadowFilter::Pcf, 3, -100, y).max, 0.5, 1e-12);
     }
 }
 

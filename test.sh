@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Builds everything with AddressSanitizer and UndefinedBehaviorSanitizer and runs all tests on every Vulkan device found.
+#   ./test.sh          what every change must pass
+#   ./test.sh --full   the long tests too
+# Sets a fresh Debian or Ubuntu machine up first.
+set -euo pipefail
+cd "$(dirname "$0")"
+. scripts/common.sh
+case "${1:-}" in
+    "") ;;
+    --full) export GNOMON_FULL=1 ;;
+    *) step_name="Reading the option '$1'" && exit 2 ;;
+esac
+
+step "Looking for packages that are missing"
+scripts/install_dependencies.sh --test
+
+step "Building with sanitizers (some minutes the first time; log in build/test.log)"
+build() { cmake --preset sanitize && cmake --build --preset sanitize --parallel "$(nproc)"; }
+quietly build/test.log build
+
+# SwiftShader beside the installed drivers.
+swiftshader=/usr/lib/chromium/vk_swiftshader_icd.json
+if [ -e "$swiftshader" ]; then
+    export VK_ADD_DRIVER_FILES="$swiftshader${VK_ADD_DRIVER_FILES:+:$VK_ADD_DRIVER_FILES}"
+fi
+export ASAN_OPTIONS="detect_leaks=1:strict_string_checks=1:${ASAN_OPTIONS:-}"
+export LSAN_OPTIONS="suppressions=$PWD/scripts/lsan.supp:print_suppressions=0:${LSAN_OPTIONS:-}"
+export UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}"
+
+step "Vulkan devices"
+build/sanitize/bin/gnomon devices
+
+step "Testing"
+ctest --test-dir build/sanitize --output-on-failure
+step "All tests are done"

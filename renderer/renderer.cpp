@@ -284,6 +284,7 @@ std::vector<std::uint32_t> Renderer::readTriangleIds() {
                                                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     std::vector<std::uint32_t> ids(bytes.size() / 4);
     std::memcpy(ids.data(), bytes.data(), ids.size() * 4);
+    for (std::uint32_t& id : ids) id = state_->scene.trianglePosition(id);
     return ids;
 }
 

@@ -68,7 +68,7 @@ public:
     FrameReport report(std::uint64_t frameNumber) const;
     /// Linear picture of the last frame. Waits.
     HdrPicture readPicture();
-    /// Triangle id (position among all instances' triangles) per pixel, kNone at background. Waits.
+    /// Per pixel the triangle's position among all instances' triangles in the scene's order, kNone at background. Waits.
     std::vector<std::uint32_t> readTriangleIds();
 
     std::vector<MemoryUseRow> memory() const;

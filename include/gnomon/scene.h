@@ -19,7 +19,7 @@ enum class DeviceDepth : std::uint8_t {
 };
 
 /// A camera. Perspective or orthographic, finite or infinite far plane, off-centre and jittered projections are fine;
-/// sheared ones are not. Pixels whose device depth is exactly the far value are background.
+/// sheared and mirrored ones, oblique near planes and orthographic near planes behind the eye are refused. Pixels whose device depth is exactly the far value are background.
 struct Camera {
     /// Rigid: a rotation and a translation, nothing else (checked to 1e-3).
     float viewFromWorld[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -35,21 +35,22 @@ struct Light {
     LightType type = LightType::Point;
     /// Bit mask; the light reaches a receiver iff (mask & receiver mask) != 0.
     std::uint8_t mask = 0xFF;
-    /// Metres, relative to the frame's origin. Ignored for directional lights.
+    /// Metres, relative to the frame's origin, at most 1e9. Ignored for directional lights.
     float position[3] = {0, 0, 0};
     /// From the light into the scene; normalised by the library. Ignored for point lights.
     float direction[3] = {0, 0, -1};
     /// Metres; the light has no influence beyond. 0: derived from `intensity` as the distance at which an unshadowed
     /// surface facing the light receives PrepareDesc::rangeCutoffLux. Ignored for directional lights.
     float rangeMetres = 0.0f;
-    /// Candela (lux for directional lights). Used for a missing range and for the choice among too many lights only.
+    /// Candela (lux for directional lights); 0: the light is off. Else used for a missing range and for the choice among
+    /// too many lights only: what the host's shader makes of the light is its own business. At least 0.
     float intensity = 1.0f;
     /// Spot: half-angle of the cone in radians, above 0 and below pi/2 (checked: at most 1.55).
     float outerConeAngle = 0.785398163f;
     /// Radius of the source in metres; directional lights: angular radius in radians. Drives the penumbra.
     float sourceRadius = 0.0f;
     /// The light fades from full at fadeStart to nothing at fadeEnd metres between camera and light. Ignored for
-    /// directional lights.
+    /// directional lights. The end may not be before the start.
     float fadeStartMetres = std::numeric_limits<float>::infinity();
     float fadeEndMetres = std::numeric_limits<float>::infinity();
     /// Likewise its shadow; beyond the end the light casts none.
@@ -60,7 +61,7 @@ struct Light {
     /// Multiplies the light's importance where more than 1024 lights compete.
     float priority = 1.0f;
     /// Index of the light's first ShadowView (point lights: of six in a row, +X -X +Y -Y +Z -Z), or kNoShadowViews for a
-    /// light that casts no shadow. Directional lights cast none yet.
+    /// light that casts no shadow. Ignored for directional lights, which cast none yet.
     std::uint32_t firstShadowView = kNoShadowViews;
 };
 

@@ -22,11 +22,12 @@ vec3 eyeDirection(Receiver receiver) {
     return isOrthographic() ? -frame.axisZWs.xyz : normalize(frame.eyeWs.xyz - receiver.positionWs);
 }
 
+// Alpha 0 says that no geometry is there.
 void writeBackground(uvec2 pixel) {
     vec2 xy = (vec2(pixel) + 0.5) * frame.viewXyFromPixel.xy + frame.viewXyFromPixel.zw;
     vec3 direction = isOrthographic() ? frame.axisZWs.xyz
                                       : normalize(frame.axisXWs.xyz * xy.x + frame.axisYWs.xyz * xy.y + frame.axisZWs.xyz);
-    imageStore(picture, ivec2(pixel), vec4(backgroundRadiance(direction), 1.0));
+    imageStore(picture, ivec2(pixel), vec4(backgroundRadiance(direction), 0.0));
 }
 
 #ifdef GNOMON_DEFERRED

@@ -9,7 +9,7 @@
 
 namespace gnomon::renderer {
 
-/// Linear Rec. 709, RGBA, rows from the top.
+/// Linear Rec. 709, RGBA, rows from the top. Alpha is 0 where there is no geometry, else 1.
 struct HdrPicture {
     std::uint32_t width = 0, height = 0;
     std::vector<float> rgba;
@@ -21,7 +21,8 @@ struct Picture {
     std::vector<std::uint8_t> rgb;
 };
 
-/// EV100 at which the picture's geometric mean luminance becomes a middle grey; black and non-finite pixels are left out.
+/// EV100 at which the picture's geometric mean luminance becomes a middle grey; black, non-finite and
+/// background pixels are left out.
 /// Source: Lagarde and de Rousiers 2014, "Moving Frostbite to PBR", section 5.1 (EV100 and saturation-based speed).
 float automaticExposure(const HdrPicture& picture);
 

@@ -32,6 +32,7 @@ float automaticExposure(const HdrPicture& picture) {
     double sum = 0.0;
     std::size_t count = 0;
     for (std::size_t i = 0; i + 4 <= picture.rgba.size(); i += 4) {
+        if (picture.rgba[i + 3] == 0.0f) continue;
         const float value = luminance(&picture.rgba[i]);
         if (!std::isfinite(value) || value <= 0.0f) continue;
         sum += std::log2(static_cast<double>(value));

@@ -57,6 +57,24 @@ Result cameraByIndex(std::string_view text, const Scene& scene, SceneCamera& cam
     return {};
 }
 
+// The least distance from the centre, against `toEye`, at which every corner of the box is in a picture of 4:3 or wider.
+float framingDistance(const Bounds& bounds, const glm::vec3& toEye, float verticalFieldOfView) {
+    constexpr float kMargin = 1.08f;
+    constexpr float kNarrowestAspect = 4.0f / 3.0f;
+    const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0.0f, 1.0f, 0.0f), toEye));
+    const glm::vec3 up = glm::cross(toEye, right);
+    const float slope = std::tan(0.5f * verticalFieldOfView) / kMargin;
+    float distance = 0.0f;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::vec3 sign((corner & 1) != 0 ? 1.0f : -1.0f, (corner & 2) != 0 ? 1.0f : -1.0f,
+                             (corner & 4) != 0 ? 1.0f : -1.0f);
+        const glm::vec3 p = 0.5f * sign * (bounds.max - bounds.min);
+        const float wide = std::max(std::abs(glm::dot(p, right)) / kNarrowestAspect, std::abs(glm::dot(p, up)));
+        distance = std::max(distance, wide / slope + glm::dot(p, toEye));
+    }
+    return distance;
+}
+
 }  // namespace
 
 SceneCamera defaultCamera(const Scene& scene) {
@@ -68,9 +86,10 @@ SceneCamera defaultCamera(const Scene& scene) {
     camera.name = "default";
     const float radius = bounds.radius() > 0.0f ? bounds.radius() : 1.0f;
     const glm::vec3 centre = bounds.empty() ? glm::vec3(0.0f) : bounds.centre();
-    const float distance = 1.05f * radius / std::sin(0.5f * camera.verticalFieldOfView);
-    camera.worldFromCamera = lookingAt(centre + distance * glm::normalize(glm::vec3(0.75f, 0.5f, 1.0f)), centre);
-    camera.nearMetres = std::clamp(0.004f * radius, 1.0e-4f * radius, distance - radius);
+    const glm::vec3 toEye = glm::normalize(glm::vec3(0.75f, 0.5f, 1.0f));
+    const float framing = bounds.radius() > 0.0f ? framingDistance(bounds, toEye, camera.verticalFieldOfView) : 3.0f;
+    camera.worldFromCamera = lookingAt(centre + framing * toEye, centre);
+    camera.nearMetres = 0.004f * radius;
     return camera;
 }
 

@@ -5,32 +5,54 @@
 // would cost a full shadow evaluation in phase 4.
 // Source: the paper, section 2.3, listing 3, corrected (the packed word of entry e is e / 3).
 // Plain way: one lane per pixel, a vote and a list append per light.
-// Here: every lane collects a word of 32 answers, a subgroup ORs them, and subgroups meet in shared memory once per word
-// instead of once per light. The list is written at the end by all lanes from the 32 words: ascending light index, so its
-// order never depends on the order of execution.
-// Memory safety: with the paper's reservation the space is the tile's approximate count. Lights that the tile's own mask
-// and zBins reject are skipped, the froxel tests are conservative against lightReaches(), and a tile that still exceeded
-// its space would be marked as one without list space, so that no light is lost; a counter records it and must stay 0.
+// Here: first the work group tests 64 lights at a time, one per lane, against the tile's own froxel, as phase 2 did: most
+// lights of the group's mask are its other tiles'. The few that are left are tested per pixel. Every lane collects a word
+// of 32 answers, a subgroup ORs them, and subgroups meet in shared memory once per word instead of once per light. The
+// list is written at the end by all lanes from the 32 words: ascending light index, so its order never depends on the
+// order of execution.
+// Memory safety: with the paper's reservation the space is the tile's approximate count. Lights that the tile's own mask,
+// zBins and froxel reject are skipped, the froxel tests are conservative against lightReaches(), and a tile that still
+// exceeded its space would be marked as one without list space, so that no light is lost; a counter records it and must
+// stay 0.
 #extension GL_GOOGLE_include_directive : require
 #define GNOMON_LISTS_ACCESS
 #include "vulkan/work_group.glsl"
+#include "find_lights_approximate/froxel.glsl"
 #include "shading/candidates.glsl"
-#include "shading/light_tests.glsl"
 #include "shading/receiver.glsl"
 
 layout(constant_id = 2) const uint kListReservation = kReserveApproximate;
 
+shared uint candidateWords[kLightGroupCount];
 shared uint tileWords[kLightGroupCount];
 shared uint castingWords[kLightGroupCount];
 shared uint tileSlotId;
 
-void testLights(Receiver receiver, Candidates candidates, uint groupMaskBase) {
-    bool cullFacing = (frame.pools.w & kFrameFacingCullBit) != 0u && !receiver.subsurface;
-    uint groups = candidates.groupBits & tileGroupLightMasks[groupMaskBase];
+// Lights of the group's mask that may reach the tile, one per lane, two light groups at a time.
+void testFroxel(uint lane, uint groups, Candidates candidates, Froxel froxel, uint groupMaskBase) {
     while (groups != 0u) {
         uint group = findLSB(groups);
         groups &= groups - 1u;
-        uint bits = tileGroupLightMasks[groupMaskBase + 1u + group] & candidateWord(candidates, group);
+        if (groups != 0u) {
+            if (lane >= kLightGroupSize) group = findLSB(groups);
+            groups &= groups - 1u;
+        } else if (lane >= kLightGroupSize) {
+            break;
+        }
+        uint bit = lane % kLightGroupSize;
+        uint wanted = tileGroupLightMasks[groupMaskBase + 1u + group] & candidateWord(candidates, group);
+        if ((wanted >> bit & 1u) != 0u && lightMayReachFroxel(lights[group * kLightGroupSize + bit], froxel)) {
+            atomicOr(candidateWords[group], 1u << bit);
+        }
+    }
+}
+
+void testPixels(Receiver receiver, uint groups) {
+    bool cullFacing = (frame.pools.w & kFrameFacingCullBit) != 0u && !receiver.subsurface;
+    while (groups != 0u) {
+        uint group = findLSB(groups);
+        groups &= groups - 1u;
+        uint bits = candidateWords[group];
         uint found = 0u;
         uint casting = 0u;
         while (bits != 0u) {
@@ -91,17 +113,24 @@ void main() {
     uint lane = laneIndex();
     uvec2 tile = gl_WorkGroupID.xy;
     uint tileIndex = tileIndexOf(tile);
-    for (uint i = lane; i < kLightGroupCount; i += kWorkGroupSize) {
-        tileWords[i] = 0u;
-        castingWords[i] = 0u;
+    if (lane < kLightGroupCount) {
+        candidateWords[lane] = 0u;
+        tileWords[lane] = 0u;
+        castingWords[lane] = 0u;
     }
     barrier();
     vec2 depths = tileDepthRanges[tileIndex];
-    if (depths.x <= depths.y) {
-        Receiver receiver = receiverAt(tile * kShadowTileSizePx + laneCoordinates(lane));
+    bool hasGeometry = depths.x <= depths.y;
+    Receiver receiver = receiverAt(tile * kShadowTileSizePx + laneCoordinates(lane));
+    uint groups = 0u;
+    if (hasGeometry) {
+        uint groupMaskBase = tileGroupIndexOf(tile) * kLightMaskEntryWords;
         Candidates candidates = candidatesOf(tile * kShadowTileSizePx, depths.x, depths.y);
-        testLights(receiver, candidates, tileGroupIndexOf(tile) * kLightMaskEntryWords);
+        groups = candidates.groupBits & tileGroupLightMasks[groupMaskBase];
+        testFroxel(lane, groups, candidates, froxelOf(tile, depths.x, depths.y), groupMaskBase);
     }
+    barrier();
+    testPixels(receiver, groups);
     barrier();
 
     uint count = 0u;

@@ -59,7 +59,7 @@ void writeGroupMask(uint lane) {
 
 void main() {
     uint lane = laneIndex();
-    for (uint i = lane; i < kLightGroupCount; i += kWorkGroupSize) groupWords[i] = 0u;
+    if (lane < kLightGroupCount) groupWords[lane] = 0u;
     barrier();
 
     uvec2 tile = gl_WorkGroupID.xy * kTileGroupSizeTiles + laneCoordinates(lane);

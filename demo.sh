@@ -20,7 +20,7 @@ if grep -q ' GPU, ' <<<"$devices"; then size=1280x720; fi
 
 mkdir -p out
 step "Rendering the courtyard at $size with deferred shadows"
-"$gnomon" render courtyard --size "$size" --frames 3 -o out/courtyard.png --stats out/courtyard.json
+"$gnomon" render courtyard --size "$size" --frames 3 --list-entries 250000 -o out/courtyard.png --stats out/courtyard.json
 for camera in arcade fountain; do
     step "Rendering the camera '$camera'"
     quietly "build/demo-$camera.log" "$gnomon" render courtyard --camera "$camera" --size "$size" -o "out/courtyard_$camera.png"

@@ -21,7 +21,8 @@ void printRow(const std::string& name, const char* kind, const std::vector<doubl
 }
 
 void printVariant(const Variant& variant) {
-    fmt::print("\n{:<28} {:<10} {:>10} {:>10} {:>10}\n", "Shadows " + variant.name(), "kind", "median ms", "min", "p95");
+    fmt::print("\n{:<28} {:<10} {:>10} {:>10} {:>10}\n", "Shadows " + variant.name(), "kind", "median ms", "min",
+               "p95");
     for (const Variant::Row& row : variant.passes())
         printRow(row.name, row.statistics ? "statistics" : row.drawing ? "drawing" : "compute", row.milliseconds);
     printRow("shadow phases and lighting", "compute", variant.compute());
@@ -35,7 +36,8 @@ Json toJson(const std::vector<double>& milliseconds) {
 }
 
 const Variant* find(const std::vector<Variant>& variants, const std::string& name) {
-    const auto found = std::find_if(variants.begin(), variants.end(), [&](const Variant& v) { return v.name() == name; });
+    const auto found =
+        std::find_if(variants.begin(), variants.end(), [&](const Variant& v) { return v.name() == name; });
     return found == variants.end() ? nullptr : &*found;
 }
 

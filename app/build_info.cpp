@@ -4,7 +4,9 @@
 
 namespace gnomon::app {
 
-std::string version() { return GNOMON_VERSION; }
+std::string version() {
+    return GNOMON_VERSION;
+}
 
 std::string commit() {
     if (const char* given = std::getenv("GNOMON_COMMIT"); given != nullptr && *given != '\0') return given;

@@ -27,15 +27,16 @@ int compareFiles(const CompareOptions& options) {
     if (!options.difference.empty()) renderer::checkWritable(options.difference);
     const renderer::Picture a = readInput(options.a), b = readInput(options.b);
     if (a.width != b.width || a.height != b.height)
-        throw UsageError(fmt::format("The pictures differ in size: {}x{} and {}x{}.", a.width, a.height, b.width, b.height));
+        throw UsageError(
+            fmt::format("The pictures differ in size: {}x{} and {}x{}.", a.width, a.height, b.width, b.height));
     const renderer::Difference difference = renderer::compare(a, b);
     if (!options.difference.empty()) renderer::writePng(renderer::differencePicture(a, b), options.difference);
     const double share = 100.0 * static_cast<double>(difference.pixels) / (static_cast<double>(a.width) * a.height);
     fmt::print("Largest difference {} of 255; {} pixels differ ({:.4f} %); mean {:.6f}.\n", difference.largest,
                difference.pixels, share, difference.meanAbsolute);
     if (difference.largest <= options.tolerance) return kGood;
-    throw std::runtime_error(
-        fmt::format("The pictures differ by {}, more than the tolerance of {}.", difference.largest, options.tolerance));
+    throw std::runtime_error(fmt::format("The pictures differ by {}, more than the tolerance of {}.",
+                                         difference.largest, options.tolerance));
 }
 
 }  // namespace

@@ -46,9 +46,11 @@ void printCounters(const FrameResult& result) {
                result.library.visibilitySlots, s.slotOverflowEntries);
     fmt::print("Tiles shaded with shadowmaps: {}. Tiles where accurate exceeds approximate: {}.\n", s.evaluateTiles,
                s.accurateExceedsApproximate);
-    fmt::print("Shadow views: {} in an atlas of {} px, {} drawn this frame ({} triangles); lights shrunk {}, without room {}.\n",
-               r.shadowViews, r.atlasSizePx, r.shadowViewsDrawn, r.shadowTrianglesDrawn, r.shadowLightsShrunk,
-               r.shadowLightsDropped);
+    fmt::print(
+        "Shadow views: {} in an atlas of {} px, {} drawn this frame ({} triangles); lights shrunk {}, without room "
+        "{}.\n",
+        r.shadowViews, r.atlasSizePx, r.shadowViewsDrawn, r.shadowTrianglesDrawn, r.shadowLightsShrunk,
+        r.shadowLightsDropped);
 }
 
 void printAdvice(const FrameResult& result) {
@@ -56,11 +58,11 @@ void printAdvice(const FrameResult& result) {
     if (result.library.poolsCapped)
         fmt::print("The device's largest storage buffer caps the pools: they are smaller than asked for.\n");
     if (s.listOverflowTiles != 0 || s.slotOverflowEntries != 0)
-        fmt::print("The pools were too small for this frame, and what found no space was evaluated while lighting: "
-                   "--list-entries {} --visibility-slots {} would hold it.\n",
-                   s.recommendedListEntries, s.recommendedVisibilitySlots);
-    if (s.lights.dropped != 0)
-        fmt::print("{} visible lights were dropped: a view holds 1024.\n", s.lights.dropped);
+        fmt::print(
+            "The pools were too small for this frame, and what found no space was evaluated while lighting: "
+            "--list-entries {} --visibility-slots {} would hold it.\n",
+            s.recommendedListEntries, s.recommendedVisibilitySlots);
+    if (s.lights.dropped != 0) fmt::print("{} visible lights were dropped: a view holds 1024.\n", s.lights.dropped);
     if (result.report.shadowLightsDropped != 0)
         fmt::print("{} lights cast no shadow for want of room in the atlas: a larger --atlas would hold them.\n",
                    result.report.shadowLightsDropped);
@@ -68,7 +70,9 @@ void printAdvice(const FrameResult& result) {
 
 }  // namespace
 
-bool isStatisticsPass(const renderer::PassTime& pass) { return pass.name == "gather_statistics"; }
+bool isStatisticsPass(const renderer::PassTime& pass) {
+    return pass.name == "gather_statistics";
+}
 
 Totals totalsOf(const std::vector<renderer::PassTime>& passes) {
     Totals totals;

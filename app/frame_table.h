@@ -10,7 +10,7 @@ struct FrameResult {
     renderer::FrameReport report;
     std::vector<renderer::MemoryUseRow> memory;
     MemoryReport library;
-    std::string hash;        // of the tone-mapped picture; empty if there is none
+    std::string hash;  // of the tone-mapped picture; empty if there is none
     float exposureEv100 = 0.0f;
     std::uint64_t frames = 1;  // rendered; the report is the last one's
 };

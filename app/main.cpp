@@ -18,7 +18,8 @@ namespace {
 // One line that ends like a sentence, whatever a library wrote.
 void complain(std::string sentence) {
     while (!sentence.empty() && (sentence.back() == '\n' || sentence.back() == ' ')) sentence.pop_back();
-    std::replace_if(sentence.begin(), sentence.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    std::replace_if(
+        sentence.begin(), sentence.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
     if (sentence.empty() || std::string(".!?").find(sentence.back()) == std::string::npos) sentence += '.';
     std::fputs(("gnomon: " + sentence + "\n").c_str(), stderr);
 }
@@ -64,4 +65,6 @@ int guarded(int argc, char** argv) {
 }  // namespace
 }  // namespace gnomon::app
 
-int main(int argc, char** argv) { return gnomon::app::guarded(argc, argv); }
+int main(int argc, char** argv) {
+    return gnomon::app::guarded(argc, argv);
+}

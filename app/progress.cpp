@@ -18,9 +18,15 @@ spdlog::logger& logger() {
 
 }  // namespace
 
-void silenceProgress() { logger().set_level(spdlog::level::warn); }
-void sayProgress(const std::string& sentence) { logger().info("{}", sentence); }
-void sayWarning(const std::string& sentence) { logger().warn("Warning: {}", sentence); }
+void silenceProgress() {
+    logger().set_level(spdlog::level::warn);
+}
+void sayProgress(const std::string& sentence) {
+    logger().info("{}", sentence);
+}
+void sayWarning(const std::string& sentence) {
+    logger().warn("Warning: {}", sentence);
+}
 
 void FrameProgress::step() {
     ++done_;

@@ -45,9 +45,10 @@ FrameResult renderFrames(renderer::Renderer& renderer, const Session& session, c
     return result;
 }
 
-void writePictures(renderer::Renderer& renderer, const Session& session, const RenderOptions& options, FrameResult& result) {
+void writePictures(renderer::Renderer& renderer, const Session& session, const RenderOptions& options,
+                   FrameResult& result) {
     const renderer::HdrPicture linear = renderer.readPicture();
-    result.exposureEv100 = options.exposure            ? *options.exposure
+    result.exposureEv100 = options.exposure                ? *options.exposure
                            : session.scene().exposureEv100 ? *session.scene().exposureEv100
                                                            : renderer::automaticExposure(linear);
     const renderer::Picture picture = renderer::toneMap(linear, result.exposureEv100);

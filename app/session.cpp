@@ -29,8 +29,8 @@ renderer::DeviceInfo chooseDevice(const renderer::VulkanInstance& instance, cons
 
 const renderer::DeviceInfo& fitting(const renderer::DeviceInfo& info, const renderer::RendererDesc& desc) {
     const VkPhysicalDeviceLimits& limits = info.properties.limits;
-    const std::uint32_t most = std::min({limits.maxImageDimension2D, limits.maxFramebufferWidth,
-                                         limits.maxFramebufferHeight});
+    const std::uint32_t most =
+        std::min({limits.maxImageDimension2D, limits.maxFramebufferWidth, limits.maxFramebufferHeight});
     if (std::max({desc.widthPx, desc.heightPx, desc.atlasSizePx}) > most)
         throw UsageError(fmt::format("'{}' draws pictures of at most {} pixels across.", info.name, most));
     if (desc.subgroupSize != 0 &&
@@ -63,8 +63,9 @@ Scene loadScene(const Settings& settings) {
     else if (extension == ".gltf" || extension == ".glb")
         scene = loadFile(settings.scene);
     else
-        throw UsageError(fmt::format("There is no scene '{}': give a name that 'gnomon scenes' lists, or a .gltf or .glb file.",
-                                     settings.scene));
+        throw UsageError(
+            fmt::format("There is no scene '{}': give a name that 'gnomon scenes' lists, or a .gltf or .glb file.",
+                        settings.scene));
     // The columns have places of their own for their lights.
     if (settings.lights != 0 && settings.scene != "columns")
         renderer::scatterLights(scene, settings.lights, settings.seed);

@@ -40,7 +40,9 @@ void addSettings(CLI::App& command, Settings& s) {
         ->capture_default_str();
     command.add_option("--lights", s.lights, "Scatter so many shadowed lights over the scene")
         ->check(CLI::Range(0u, kMostLights));
-    command.add_option("--seed", s.seed, "Of scattered lights")->check(CLI::Range(std::int64_t{0}, std::int64_t{0xFFFFFFFF}))->capture_default_str();
+    command.add_option("--seed", s.seed, "Of scattered lights")
+        ->check(CLI::Range(std::int64_t{0}, std::int64_t{0xFFFFFFFF}))
+        ->capture_default_str();
     command.add_option("--filter", s.filter, "Shadow filter")
         ->check(CLI::IsMember({"hard", "pcf", "pcss"}))
         ->capture_default_str();

@@ -11,8 +11,8 @@ namespace {
 
 void requireEqualExtents(const Picture& a, const Picture& b) {
     if (a.width != b.width || a.height != b.height)
-        throw std::invalid_argument(fmt::format("The pictures differ in size: {}x{} and {}x{}.", a.width, a.height,
-                                                b.width, b.height));
+        throw std::invalid_argument(
+            fmt::format("The pictures differ in size: {}x{} and {}x{}.", a.width, a.height, b.width, b.height));
 }
 
 std::uint32_t largestOfPixel(const Picture& a, const Picture& b, std::size_t pixel) {
@@ -33,7 +33,8 @@ Difference compare(const Picture& a, const Picture& b) {
         if (largest == 0) continue;
         difference.largest = std::max(difference.largest, largest);
         ++difference.pixels;
-        for (std::size_t i = 3 * p; i < 3 * p + 3; ++i) sum += static_cast<std::uint64_t>(std::abs(a.rgb[i] - b.rgb[i]));
+        for (std::size_t i = 3 * p; i < 3 * p + 3; ++i)
+            sum += static_cast<std::uint64_t>(std::abs(a.rgb[i] - b.rgb[i]));
     }
     if (!a.rgb.empty()) difference.meanAbsolute = static_cast<double>(sum) / static_cast<double>(a.rgb.size());
     return difference;

@@ -12,13 +12,19 @@ constexpr float kSaturation = 1.2f;  // a saturation-based meter clips at 1.2 * 
 constexpr float kWhite = 4.0f;       // exposed luminance that becomes 1
 constexpr float kLargest = 1.0e30f;  // stands for infinity, so that products stay finite
 
-float luminance(const float* rgba) { return 0.2126f * rgba[0] + 0.7152f * rgba[1] + 0.0722f * rgba[2]; }
+float luminance(const float* rgba) {
+    return 0.2126f * rgba[0] + 0.7152f * rgba[1] + 0.0722f * rgba[2];
+}
 
 // Not a number is black, infinity very bright, a negative component none.
-float sane(float value) { return std::isnan(value) ? 0.0f : std::clamp(value, 0.0f, kLargest); }
+float sane(float value) {
+    return std::isnan(value) ? 0.0f : std::clamp(value, 0.0f, kLargest);
+}
 
 // Extended Reinhard on luminance, divided by the luminance itself.
-float compressed(float exposed) { return (1.0f + exposed / (kWhite * kWhite)) / (1.0f + exposed); }
+float compressed(float exposed) {
+    return (1.0f + exposed / (kWhite * kWhite)) / (1.0f + exposed);
+}
 
 std::uint8_t encodeSrgb(float linear) {
     const float v = std::min(linear, 1.0f);

@@ -65,14 +65,35 @@ TEST_F(Program, ListsScenesAndDevices) {
 }
 
 TEST_F(Program, WrongUsageIsRefused) {
-    for (const char* arguments :
-         {"", "nosuch", "render --bogus", "render one two", "render --lights -1", "render --lights 100001",
-          "render --lights 1e9", "render --lights 1000000000", "render --seed -1", "render --frames 0",
-          "render --filter pcss", "render --filter soft", "render --pcf-radius 0", "render --pcf-radius 4",
-          "render --shadows never", "render --exposure nan", "render --exposure 1e9", "render --atlas 100",
-          "render --subgroup-size 5", "render --list-entries -1", "render --reservation none", "render --depth odd",
-          "bench --variants never", "bench --variants inline,inline", "bench --frames 0", "compare one.png",
-          "compare one.png two.png", "compare one.png two.png --tolerance 256", "devices extra"})
+    for (const char* arguments : {"",
+                                  "nosuch",
+                                  "render --bogus",
+                                  "render one two",
+                                  "render --lights -1",
+                                  "render --lights 100001",
+                                  "render --lights 1e9",
+                                  "render --lights 1000000000",
+                                  "render --seed -1",
+                                  "render --frames 0",
+                                  "render --filter pcss",
+                                  "render --filter soft",
+                                  "render --pcf-radius 0",
+                                  "render --pcf-radius 4",
+                                  "render --shadows never",
+                                  "render --exposure nan",
+                                  "render --exposure 1e9",
+                                  "render --atlas 100",
+                                  "render --subgroup-size 5",
+                                  "render --list-entries -1",
+                                  "render --reservation none",
+                                  "render --depth odd",
+                                  "bench --variants never",
+                                  "bench --variants inline,inline",
+                                  "bench --frames 0",
+                                  "compare one.png",
+                                  "compare one.png two.png",
+                                  "compare one.png two.png --tolerance 256",
+                                  "devices extra"})
         expectRefused(arguments, 2);
 }
 

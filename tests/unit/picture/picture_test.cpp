@@ -55,8 +55,10 @@ TEST(AutomaticExposure, IsTheGeometricMean) {
     EXPECT_NEAR(automaticExposure(picture), automaticExposure(grey(1, 1.0f)), 1e-5f);
 }
 
-TEST(AutomaticExposure, LeavesOutBlackAndNonFinitePixels) {
-    HdrPicture picture = grey(4, 2.0f);
+TEST(AutomaticExposure, LeavesOutBlackNonFiniteAndBackgroundPixels) {
+    HdrPicture picture = grey(5, 2.0f);
+    picture.rgba[16] = 1000.0f;
+    picture.rgba[19] = 0.0f;  // no geometry
     picture.rgba[0] = picture.rgba[1] = picture.rgba[2] = 0.0f;
     picture.rgba[4] = std::numeric_limits<float>::quiet_NaN();
     picture.rgba[8] = std::numeric_limits<float>::infinity();

@@ -24,9 +24,12 @@ swiftshader=/usr/lib/chromium/vk_swiftshader_icd.json
 if [ -e "$swiftshader" ]; then
     export VK_ADD_DRIVER_FILES="$swiftshader${VK_ADD_DRIVER_FILES:+:$VK_ADD_DRIVER_FILES}"
 fi
-export ASAN_OPTIONS="detect_leaks=1:strict_string_checks=1:${ASAN_OPTIONS:-}"
+cc -shared -fPIC -o build/keep_drivers.so scripts/keep_drivers.c
+export ASAN_OPTIONS="detect_leaks=1:verify_asan_link_order=0:${ASAN_OPTIONS:-}"
 export LSAN_OPTIONS="suppressions=$PWD/scripts/lsan.supp:print_suppressions=0:${LSAN_OPTIONS:-}"
 export UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}"
+
+export LD_PRELOAD="$PWD/build/keep_drivers.so"
 
 step "Vulkan devices"
 build/sanitize/bin/gnomon devices

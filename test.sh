@@ -9,7 +9,11 @@ cd "$(dirname "$0")"
 case "${1:-}" in
     "") ;;
     --full) export GNOMON_FULL=1 ;;
-    *) step_name="Reading the option '$1'" && exit 2 ;;
+    *)
+        trap - EXIT
+        echo "There is no option '$1': ./test.sh takes --full or nothing." >&2
+        exit 2
+        ;;
 esac
 
 step "Looking for packages that are missing"

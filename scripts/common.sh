@@ -21,6 +21,6 @@ finish() {
     local code=$?
     [ "$code" = 0 ] && return
     if [ -n "$log_file" ]; then tail -n 30 "$log_file" >&2; fi
-    echo "Failed: '$step_name' did not succeed${log_file:+; all of its output is in $log_file}." >&2
+    echo "Failed: the step '$step_name' did not succeed${log_file:+; all of its output is in $log_file}." >&2
 }
 trap finish EXIT

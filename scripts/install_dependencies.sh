@@ -5,8 +5,8 @@
 set -euo pipefail
 
 needed=(
-    g++ cmake ninja-build git pkg-config                      # to build
-    glslc spirv-tools                                         # shaders
+    g++ cmake ninja-build git                                 # to build
+    glslc                                                     # shaders
     libvulkan-dev libvulkan-volk-dev libvulkan1               # Vulkan
     mesa-vulkan-drivers vulkan-validationlayers               # a software device, validation
     libglm-dev libtinygltf-dev libdraco-dev nlohmann-json3-dev # scenes
@@ -26,14 +26,11 @@ missing_of() {
     done
 }
 
-# Needs the packages in the array `missing`.
+# Installs the packages in the array `missing`; false where that fails.
 install_missing() {
     local as_root=()
     if [ "$(id -u)" != 0 ]; then
-        if ! command -v sudo >/dev/null; then
-            echo "Please install these packages as root: ${missing[*]}" >&2
-            return 1
-        fi
+        command -v sudo >/dev/null || return 1
         as_root=(sudo)
     fi
     echo "Installing: ${missing[*]}"
@@ -48,7 +45,7 @@ fi
 
 mapfile -t missing < <(missing_of "${needed[@]}")
 if [ "${#missing[@]}" != 0 ] && ! install_missing; then
-    echo "These packages could not be installed: ${missing[*]}" >&2
+    echo "These packages could not be installed from here; please install them as root and start again: ${missing[*]}" >&2
     exit 1
 fi
 
@@ -56,9 +53,7 @@ fi
 # snap that has no such file, and the tests do without.
 if [ "${1:-}" = --test ] && ! is_installed chromium; then
     missing=(chromium)
-    if grep -q '^ID=debian' /etc/os-release && install_missing; then
-        :
-    else
+    if ! grep -q '^ID=debian' /etc/os-release || ! install_missing; then
         echo "SwiftShader is not available here: the tests run on the other Vulkan devices alone."
     fi
 fi

@@ -1,0 +1,204 @@
+#include "unit/house/fake_vulkan.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace gnomon::house {
+namespace {
+
+FakeVulkan* current = nullptr;  // the driver's functions carry no pointer of ours
+
+template <typename Handle>
+Handle handleOf(std::uint64_t number) {
+    return reinterpret_cast<Handle>(number);
+}
+
+// A fresh handle, or null once the fake has run out of memory.
+template <typename Handle>
+VkResult make(Handle* out) {
+    if (current->made >= current->failAfter) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    *out = handleOf<Handle>(++current->made);
+    return VK_SUCCESS;
+}
+
+template <typename Handle>
+VKAPI_ATTR void VKAPI_CALL destroy(VkDevice, Handle handle, const VkAllocationCallbacks*) {
+    if (handle != VK_NULL_HANDLE) ++current->destroyed;
+}
+
+template <typename Info, typename Handle>
+VKAPI_ATTR VkResult VKAPI_CALL create(VkDevice, const Info*, const VkAllocationCallbacks*, Handle* out) {
+    return make(out);
+}
+
+VKAPI_ATTR void VKAPI_CALL getProperties2(VkPhysicalDevice, VkPhysicalDeviceProperties2* out) {
+    out->properties = current->properties;
+    for (auto* next = static_cast<VkBaseOutStructure*>(out->pNext); next != nullptr; next = next->pNext) {
+        if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES) {
+            auto* v11 = reinterpret_cast<VkPhysicalDeviceVulkan11Properties*>(next);
+            v11->subgroupSize = current->subgroupSize;
+            v11->subgroupSupportedOperations = current->subgroupOperations;
+            v11->subgroupSupportedStages = current->subgroupStages;
+        }
+        if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES) {
+            auto* v13 = reinterpret_cast<VkPhysicalDeviceVulkan13Properties*>(next);
+            v13->minSubgroupSize = current->minSubgroupSize;
+            v13->maxSubgroupSize = current->maxSubgroupSize;
+            v13->requiredSubgroupSizeStages = current->requiredSubgroupSizeStages;
+        }
+    }
+}
+
+// Every feature is there: structures of features are sType, pNext and then VkBool32 alone.
+VKAPI_ATTR void VKAPI_CALL getFeatures2(VkPhysicalDevice, VkPhysicalDeviceFeatures2* out) {
+    const auto fill = [](void* structure, std::size_t bytes) {
+        auto* flags = reinterpret_cast<VkBool32*>(static_cast<char*>(structure) + sizeof(VkBaseOutStructure));
+        std::fill_n(flags, (bytes - sizeof(VkBaseOutStructure)) / sizeof(VkBool32), VK_TRUE);
+    };
+    fill(out, sizeof(*out));
+    for (auto* next = static_cast<VkBaseOutStructure*>(out->pNext); next != nullptr; next = next->pNext) {
+        switch (next->sType) {
+            case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES:
+                fill(next, sizeof(VkPhysicalDeviceVulkan11Features));
+                break;
+            case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES:
+                fill(next, sizeof(VkPhysicalDeviceVulkan12Features));
+                break;
+            case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES:
+                fill(next, sizeof(VkPhysicalDeviceVulkan13Features));
+                break;
+            default: break;
+        }
+    }
+}
+
+VKAPI_ATTR void VKAPI_CALL getMemory(VkPhysicalDevice, VkPhysicalDeviceMemoryProperties* out) { *out = {}; }
+
+VKAPI_ATTR void VKAPI_CALL getFamilies(VkPhysicalDevice, std::uint32_t* count, VkQueueFamilyProperties* out) {
+    *count = 1;
+    if (out != nullptr) out[0] = {VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT, 1, 64, {1, 1, 1}};
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL createSetLayout(VkDevice, const VkDescriptorSetLayoutCreateInfo* info,
+                                               const VkAllocationCallbacks*, VkDescriptorSetLayout* out) {
+    const VkResult result = make(out);
+    if (result != VK_SUCCESS) return result;
+    FakeVulkan::SetLayout layout = {*out, {}};
+    for (std::uint32_t i = 0; i < info->bindingCount; ++i) {
+        const VkDescriptorSetLayoutBinding& b = info->pBindings[i];
+        layout.bindings.push_back({b.binding, b.descriptorType, b.descriptorCount});
+    }
+    current->setLayouts.push_back(layout);
+    return VK_SUCCESS;
+}
+
+FakeVulkan::Pipeline describe(const VkPipelineShaderStageCreateInfo& stage) {
+    FakeVulkan::Pipeline out;
+    out.stageFlags = stage.flags;
+    if (stage.pNext != nullptr) {
+        const auto* size = static_cast<const VkPipelineShaderStageRequiredSubgroupSizeCreateInfo*>(stage.pNext);
+        if (size->sType == VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO) {
+            out.requiredSubgroupSize = size->requiredSubgroupSize;
+        }
+    }
+    const VkSpecializationInfo* info = stage.pSpecializationInfo;
+    for (std::uint32_t i = 0; info != nullptr && i < info->mapEntryCount; ++i) {
+        const VkSpecializationMapEntry& entry = info->pMapEntries[i];
+        out.constants.resize(std::max<std::size_t>(out.constants.size(), entry.constantID + 1u));
+        std::memcpy(&out.constants[entry.constantID], static_cast<const char*>(info->pData) + entry.offset, entry.size);
+    }
+    return out;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL createComputePipelines(VkDevice, VkPipelineCache, std::uint32_t count,
+                                                      const VkComputePipelineCreateInfo* infos,
+                                                      const VkAllocationCallbacks*, VkPipeline* out) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const VkResult result = make(&out[i]);
+        if (result != VK_SUCCESS) return result;
+        current->pipelines.push_back(describe(infos[i].stage));
+    }
+    return VK_SUCCESS;
+}
+
+// Stands for every function that creating a context has no reason to call.
+VKAPI_ATTR void VKAPI_CALL neverCalled() { std::abort(); }
+
+PFN_vkVoidFunction lookUp(const char* name);
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice, const char* name) { return lookUp(name); }
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance, const char* name) { return lookUp(name); }
+
+PFN_vkVoidFunction lookUp(const char* name) {
+    const auto as = [](auto* function) { return reinterpret_cast<PFN_vkVoidFunction>(function); };
+    if (current->hidden.contains(name)) return nullptr;
+    const struct {
+        const char* name;
+        PFN_vkVoidFunction function;
+    } known[] = {
+        {"vkGetDeviceProcAddr", as(getDeviceProcAddr)},
+        {"vkGetPhysicalDeviceProperties2", as(getProperties2)},
+        {"vkGetPhysicalDeviceFeatures2", as(getFeatures2)},
+        {"vkGetPhysicalDeviceMemoryProperties", as(getMemory)},
+        {"vkGetPhysicalDeviceQueueFamilyProperties", as(getFamilies)},
+        {"vkCreateDescriptorSetLayout", as(createSetLayout)},
+        {"vkCreateComputePipelines", as(createComputePipelines)},
+        {"vkCreateSampler", as(create<VkSamplerCreateInfo, VkSampler>)},
+        {"vkCreatePipelineLayout", as(create<VkPipelineLayoutCreateInfo, VkPipelineLayout>)},
+        {"vkCreateShaderModule", as(create<VkShaderModuleCreateInfo, VkShaderModule>)},
+        {"vkDestroyDescriptorSetLayout", as(destroy<VkDescriptorSetLayout>)},
+        {"vkDestroyPipeline", as(destroy<VkPipeline>)},
+        {"vkDestroyPipelineLayout", as(destroy<VkPipelineLayout>)},
+        {"vkDestroySampler", as(destroy<VkSampler>)},
+        {"vkDestroyShaderModule", as(destroy<VkShaderModule>)},
+    };
+    for (const auto& entry : known) {
+        if (std::strcmp(entry.name, name) == 0) return entry.function;
+    }
+    return as(neverCalled);
+}
+
+constexpr std::uint32_t kFamilies[] = {0};
+
+}  // namespace
+
+FakeVulkan::FakeVulkan() {
+    current = this;
+    properties.apiVersion = VK_API_VERSION_1_3;
+    std::strcpy(properties.deviceName, "Fake device");
+    VkPhysicalDeviceLimits& limits = properties.limits;
+    limits.maxStorageBufferRange = 1u << 30;
+    limits.maxUniformBufferRange = 65536;
+    limits.maxBoundDescriptorSets = 4;
+    limits.maxPerStageDescriptorStorageBuffers = limits.maxDescriptorSetStorageBuffers = 64;
+    limits.maxPerStageDescriptorUniformBuffers = limits.maxDescriptorSetUniformBuffers = 12;
+    limits.maxPerStageDescriptorSampledImages = limits.maxDescriptorSetSampledImages = 64;
+    limits.maxPerStageDescriptorSamplers = limits.maxDescriptorSetSamplers = 16;
+    limits.maxPerStageResources = 128;
+    limits.maxComputeSharedMemorySize = 32768;
+    limits.maxComputeWorkGroupInvocations = 1024;
+    std::fill_n(limits.maxComputeWorkGroupCount, 3, 65535u);
+    std::fill_n(limits.maxComputeWorkGroupSize, 3, 1024u);
+    limits.minStorageBufferOffsetAlignment = 256;
+    limits.timestampPeriod = 1.0f;
+    subgroupOperations = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_VOTE_BIT |
+                         VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT;
+}
+
+FakeVulkan::~FakeVulkan() { current = nullptr; }
+
+ContextDesc FakeVulkan::desc() const {
+    ContextDesc desc;
+    desc.instance = handleOf<VkInstance>(1);
+    desc.physicalDevice = handleOf<VkPhysicalDevice>(2);
+    desc.device = handleOf<VkDevice>(3);
+    desc.getInstanceProcAddr = getInstanceProcAddr;
+    desc.queueFamilies = kFamilies;
+    return desc;
+}
+
+const FakeVulkan::SetLayout* FakeVulkan::find(VkDescriptorSetLayout handle) const {
+    const auto found = std::ranges::find(setLayouts, handle, &SetLayout::handle);
+    return found == setLayouts.end() ? nullptr : &*found;
+}
+
+}  // namespace gnomon::house

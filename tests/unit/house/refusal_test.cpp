@@ -1,0 +1,150 @@
+// How Context::create() refuses a device or a description: with a status and a sentence that says what to do, and with
+// everything destroyed that it had made. No device is needed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "unit/house/fake_vulkan.h"
+
+namespace gnomon::house {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+
+void expectRefused(const FakeVulkan& vulkan, const ContextDesc& desc, Status status, const char* part) {
+    std::unique_ptr<Context> context;
+    const Result result = Context::create(desc, context);
+    EXPECT_EQ(result.status(), status) << result.message();
+    EXPECT_THAT(result.message(), HasSubstr(part));
+    EXPECT_THAT(result.message(), MatchesRegex("^.+\\.$")) << "not a sentence";
+    EXPECT_EQ(context, nullptr);
+    EXPECT_EQ(vulkan.made, vulkan.destroyed);
+}
+
+TEST(Refusal, TheFakeIsAccepted) {
+    FakeVulkan vulkan;
+    std::unique_ptr<Context> context;
+    const Result result = Context::create(vulkan.desc(), context);
+    ASSERT_TRUE(result) << result.message();
+    EXPECT_EQ(context->subgroupSize(), 32u);
+    EXPECT_EQ(vulkan.pipelines.size(), 5u);
+    EXPECT_GT(vulkan.made, vulkan.destroyed);
+    context.reset();
+    EXPECT_EQ(vulkan.made, vulkan.destroyed);
+}
+
+TEST(Refusal, MissingHandles) {
+    FakeVulkan vulkan;
+    for (int i = 0; i < 3; ++i) {
+        ContextDesc desc = vulkan.desc();
+        if (i == 0) desc.instance = VK_NULL_HANDLE;
+        if (i == 1) desc.physicalDevice = VK_NULL_HANDLE;
+        if (i == 2) desc.device = VK_NULL_HANDLE;
+        expectRefused(vulkan, desc, Status::BadArgument, "needs an instance, a physical device and a device");
+    }
+    ContextDesc desc = vulkan.desc();
+    desc.getInstanceProcAddr = nullptr;
+    expectRefused(vulkan, desc, Status::BadArgument, "getInstanceProcAddr is null");
+}
+
+TEST(Refusal, BadDescriptions) {
+    FakeVulkan vulkan;
+    ContextDesc desc = vulkan.desc();
+    desc.queueFamilies = {};
+    expectRefused(vulkan, desc, Status::BadArgument, "queueFamilies");
+    const std::uint32_t many[9] = {};
+    desc.queueFamilies = many;
+    expectRefused(vulkan, desc, Status::BadArgument, "queueFamilies");
+    for (std::uint32_t radius : {0u, 4u, ~0u}) {
+        desc = vulkan.desc();
+        desc.pcfRadius = radius;
+        expectRefused(vulkan, desc, Status::BadArgument, "pcfRadius");
+    }
+    for (std::uint32_t entries : {0u, 1025u}) {
+        desc = vulkan.desc();
+        desc.listReservation = ListReservation::Fixed;
+        desc.fixedListEntriesPerTile = entries;
+        expectRefused(vulkan, desc, Status::BadArgument, "fixedListEntriesPerTile");
+    }
+}
+
+TEST(Refusal, MissingFunctions) {
+    for (const char* name : {"vkGetPhysicalDeviceProperties2", "vkGetDeviceProcAddr"}) {
+        FakeVulkan vulkan;
+        vulkan.hidden = {name};
+        expectRefused(vulkan, vulkan.desc(), Status::UnsupportedDevice, name);
+    }
+    // What a device without Vulkan 1.3, or without synchronization2, does not have.
+    for (const char* name : {"vkCmdPipelineBarrier2", "vkCmdWriteTimestamp2"}) {
+        FakeVulkan vulkan;
+        vulkan.hidden = {name};
+        expectRefused(vulkan, vulkan.desc(), Status::UnsupportedDevice, name);
+        expectRefused(vulkan, vulkan.desc(), Status::UnsupportedDevice, "synchronization2");
+    }
+    FakeVulkan vulkan;
+    vulkan.hidden = {"vkCmdBeginDebugUtilsLabelEXT"};
+    ContextDesc desc = vulkan.desc();
+    std::unique_ptr<Context> context;
+    EXPECT_TRUE(Context::create(desc, context));
+    context.reset();
+    desc.debugLabels = true;
+    expectRefused(vulkan, desc, Status::BadArgument, "VK_EXT_debug_utils");
+}
+
+TEST(Refusal, OldVulkan) {
+    FakeVulkan vulkan;
+    vulkan.properties.apiVersion = VK_API_VERSION_1_2;
+    expectRefused(vulkan, vulkan.desc(), Status::UnsupportedDevice, "needs Vulkan 1.3; 'Fake device' has 1.2");
+}
+
+TEST(Refusal, MissingSubgroupOperations) {
+    for (VkSubgroupFeatureFlagBits bit :
+         {VK_SUBGROUP_FEATURE_BASIC_BIT, VK_SUBGROUP_FEATURE_VOTE_BIT, VK_SUBGROUP_FEATURE_ARITHMETIC_BIT}) {
+        FakeVulkan vulkan;
+        vulkan.subgroupOperations &= ~static_cast<VkSubgroupFeatureFlags>(bit);
+        expectRefused(vulkan, vulkan.desc(), Status::UnsupportedDevice, "subgroup operations");
+    }
+    FakeVulkan vulkan;
+    vulkan.subgroupStages = VK_SHADER_STAGE_FRAGMENT_BIT;
+    expectRefused(vulkan, vulkan.desc(), Status::UnsupportedDevice, "compute");
+}
+
+TEST(Refusal, SubgroupSizes) {
+    FakeVulkan vulkan;
+    for (std::uint32_t size : {1u, 2u, 3u, 8u, 16u, 48u, 128u, ~0u}) {
+        ContextDesc desc = vulkan.desc();
+        desc.subgroupSize = size;
+        expectRefused(vulkan, desc, Status::UnsupportedDevice, "has 32 to 64");
+    }
+    // A device that cannot be asked runs its own size alone.
+    vulkan.requiredSubgroupSizeStages = 0;
+    ContextDesc desc = vulkan.desc();
+    desc.subgroupSize = 64;
+    expectRefused(vulkan, desc, Status::UnsupportedDevice, "64 lanes");
+}
+
+// Wider than a work group: nothing fits, unless the device can be asked for less.
+TEST(Refusal, WideSubgroups) {
+    FakeVulkan vulkan;
+    vulkan.subgroupSize = vulkan.minSubgroupSize = vulkan.maxSubgroupSize = 128;
+    expectRefused(vulkan, vulkan.desc(), Status::UnsupportedDevice, "128");
+}
+
+// Whichever call runs out of memory, what was made before is given back.
+TEST(Refusal, OutOfMemoryLeaksNothing) {
+    std::uint32_t whole = 0;
+    {
+        FakeVulkan vulkan;
+        std::unique_ptr<Context> context;
+        ASSERT_TRUE(Context::create(vulkan.desc(), context));
+        whole = vulkan.made;
+    }
+    for (std::uint32_t count = 0; count < whole; ++count) {
+        FakeVulkan vulkan;
+        vulkan.failAfter = count;
+        expectRefused(vulkan, vulkan.desc(), Status::OutOfMemory, "ran out of memory");
+    }
+}
+
+}  // namespace
+}  // namespace gnomon::house

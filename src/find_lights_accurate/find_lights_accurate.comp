@@ -74,9 +74,11 @@ void testPixels(Receiver receiver, uint groups) {
     }
 }
 
-// Light index of list entry `entry`: the entry-th set bit of the tile's words.
-uint lightOfEntry(uint entry) {
-    for (uint group = 0u; group < kLightGroupCount; ++group) {
+// Light index of list entry `entry`: the entry-th set bit of the words of `groups`.
+uint lightOfEntry(uint groups, uint entry) {
+    while (groups != 0u) {
+        uint group = findLSB(groups);
+        groups &= groups - 1u;
         uint word = tileWords[group];
         uint count = bitCount(word);
         if (entry < count) {
@@ -86,6 +88,17 @@ uint lightOfEntry(uint entry) {
         entry -= count;
     }
     return 0u;
+}
+
+// How many lights the tile has, and how many of them cast shadows.
+uvec2 countLights(uint groups) {
+    uvec2 counts = uvec2(0u);
+    while (groups != 0u) {
+        uint group = findLSB(groups);
+        groups &= groups - 1u;
+        counts += uvec2(bitCount(tileWords[group]), bitCount(castingWords[group]));
+    }
+    return counts;
 }
 
 // Space for this tile's `count` lights, or kNoListSpace. Called by one lane.
@@ -133,17 +146,13 @@ void main() {
     testPixels(receiver, groups);
     barrier();
 
-    uint count = 0u;
-    uint casting = 0u;
-    for (uint group = 0u; group < kLightGroupCount; ++group) {
-        count += bitCount(tileWords[group]);
-        casting += bitCount(castingWords[group]);
-    }
+    uvec2 counts = countLights(groups);
+    uint count = counts.x;
     if (lane == 0u) {
         uint slotId = reserve(tileIndex, count);
         tileSlotId = slotId;
         tileLightSlotIds[tileIndex] = slotId;
-        earlyCounts[tileIndex] = slotId == kNoListSpace ? 0u : count | (casting << kEarlyCastingShift);
+        earlyCounts[tileIndex] = slotId == kNoListSpace ? 0u : count | (counts.y << kEarlyCastingShift);
     }
     barrier();
     if (tileSlotId == kNoListSpace) return;
@@ -151,7 +160,7 @@ void main() {
         uint packed = 0u;
         for (uint i = 0u; i < kEarlyIndicesPerWord; ++i) {
             uint entry = word * kEarlyIndicesPerWord + i;
-            if (entry < count) packed |= lightOfEntry(entry) << (kLightIndexBits * i);
+            if (entry < count) packed |= lightOfEntry(groups, entry) << (kLightIndexBits * i);
         }
         earlyList[tileSlotId / kEarlyIndicesPerWord + word] = packed;
     }

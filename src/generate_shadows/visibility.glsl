@@ -3,7 +3,7 @@
 // Problem: a frame must not depend on which pair got a slot and which is evaluated while lighting.
 // What we do: every evaluation, wherever it happens, returns the value that a slot can hold, and everything before it is
 // precise, so that different pipelines compute the same bits. The 8 bits are perceptual: q = round(255 * sqrt(v)).
-// A host's own provider: -DGNOMON_HOST_PROVIDER='"file.glsl"', which defines
+// A host's own provider: -DGNOMON_HOST_PROVIDER and, on the include path, gnomon_host_provider.glsl, which defines
 //     float hostVisibility(GpuLight light, Receiver receiver, vec3 toLight);   // 0 dark to 1 lit
 #ifndef GNOMON_GENERATE_SHADOWS_VISIBILITY_GLSL
 #define GNOMON_GENERATE_SHADOWS_VISIBILITY_GLSL
@@ -15,7 +15,7 @@ layout(constant_id = 3) const uint kPcfRadius = 1;
 #include "generate_shadows/hard.glsl"
 #include "generate_shadows/pcf.glsl"
 #ifdef GNOMON_HOST_PROVIDER
-#include GNOMON_HOST_PROVIDER
+#include "gnomon_host_provider.glsl"  // glslc expands no macro here
 #endif
 
 float providerVisibility(GpuLight light, Receiver receiver, vec3 toLight) {

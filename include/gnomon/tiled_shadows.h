@@ -64,7 +64,7 @@ struct ContextDesc {
     /// The host gives a two-channel pyramid level (min, max device depth per 8x8 tile) instead of having one built.
     bool hostDepthPyramid = false;
     /// Optional SPIR-V of src/generate_shadows/generate_shadows.comp, compiled by the host with
-    /// -DGNOMON_HOST_PROVIDER="file.glsl": see docs/integration.md.
+    /// -DGNOMON_HOST_PROVIDER and a gnomon_host_provider.glsl on the include path: see docs/integration.md.
     std::span<const std::uint32_t> generateShadowsSpirv;
 };
 

@@ -1,0 +1,211 @@
+#include "checks.h"
+
+#include <set>
+
+#include "reference/hierarchical_depth.h"
+
+namespace gnomon::test {
+
+using namespace reference;
+
+namespace {
+
+ShadowInput shadowInputOf(const FrameInput& input, const ContextSetup& setup) {
+    ShadowInput out;
+    out.filter = setup.filter == Filter::Hard  ? ShadowFilter::Hard
+                 : setup.filter == Filter::Pcf ? ShadowFilter::Pcf
+                                               : ShadowFilter::Off;
+    out.pcfRadius = static_cast<int>(setup.pcfRadius);
+    out.subsurfaceBiasMetres = input.subsurfaceBiasMetres;
+    out.views = makeShadowViewModels(input.shadows->views);
+    out.atlases = input.shadows->atlases;
+    return out;
+}
+
+void expectNone(const Findings& findings, const char* what) {
+    EXPECT_TRUE(findings.ok()) << what << ": " << findings.text();
+}
+
+/// Bits of `words` that belong to some tile's list.
+std::vector<bool> ownedEntries(const FrameResult& r) {
+    std::vector<bool> owned(r.listCapacity, false);
+    for (std::size_t tile = 0; tile < r.slotIds.size(); ++tile) {
+        if (r.slotIds[tile] == gpu::kNoListSpace) continue;
+        const std::uint32_t count = gpu::roundUpToEarlyWord(r.earlyCounts[tile] & gpu::kEarlyCountMask);
+        for (std::uint32_t i = 0; i < count && r.slotIds[tile] + i < owned.size(); ++i) owned[r.slotIds[tile] + i] = true;
+    }
+    return owned;
+}
+
+}  // namespace
+
+void checkCanaries(const FrameResult& r, bool shadows) {
+    EXPECT_EQ(r.brokenGuards, 0u);
+    EXPECT_EQ(r.beyondTiles, 0u);
+    const std::vector<bool> owned = ownedEntries(r);
+    std::size_t early = 0, final = 0, slots = 0;
+    for (std::size_t i = 0; i < owned.size(); ++i) {
+        if (owned[i]) continue;
+        final += i < r.finalList.size() && r.finalList[i] != kCanary;
+        const std::size_t word = i / gpu::kEarlyIndicesPerWord;
+        early += i % gpu::kEarlyIndicesPerWord == 0 && word < r.earlyList.size() && r.earlyList[word] != kCanary;
+    }
+    const std::size_t used = shadows ? std::min(r.counters.visibilitySlots, r.slotCapacity) : 0;
+    for (std::size_t i = used * gpu::kVisibilitySlotWords; i < r.visibility.size(); ++i)
+        slots += r.visibility[i] != kCanary;
+    EXPECT_EQ(early, 0u) << "words of the early list that no tile owns were written";
+    EXPECT_EQ(final, 0u) << "words of the final list that no tile owns were written";
+    EXPECT_EQ(slots, 0u) << "words of visibility slots that nobody took were written";
+}
+
+namespace {
+
+/// Sums over the buffers of a frame.
+struct Sums {
+    std::uint32_t geometry = 0, approximate = 0, early = 0, casting = 0, most = 0;
+    std::uint32_t reservedApproximate = 0, reservedAccurate = 0, withoutSpace = 0;
+    std::uint32_t finals = 0, slots = 0, evaluate = 0, evaluateTiles = 0;
+};
+
+Sums sumsOf(const FrameResult& r, bool shadows) {
+    Sums sums;
+    std::set<std::uint32_t> slots;
+    const ListBuffers lists = r.lists();
+    for (std::size_t tile = 0; tile < r.slotIds.size(); ++tile) {
+        sums.geometry += r.depthRanges[2 * tile] <= r.depthRanges[2 * tile + 1];
+        sums.approximate += r.approximateCounts[tile];
+        const std::uint32_t count = r.earlyCounts[tile] & gpu::kEarlyCountMask;
+        EXPECT_LE(count, r.approximateCounts[tile]) << "tile " << tile;
+        sums.early += count;
+        sums.most = std::max(sums.most, count);
+        sums.casting += r.earlyCounts[tile] >> gpu::kEarlyCastingShift;
+        sums.reservedApproximate += gpu::roundUpToEarlyWord(r.approximateCounts[tile]);
+        sums.reservedAccurate += gpu::roundUpToEarlyWord(count);
+        sums.withoutSpace += r.slotIds[tile] == gpu::kNoListSpace;
+        if (!shadows) continue;
+        sums.evaluateTiles += (r.finalCounts[tile] & gpu::kFinalEvaluateBit) != 0;
+        for (const FinalEntry& entry : finalEntries(lists, tile)) {
+            ++sums.finals;
+            if (isSlot(entry.slotOrFlag)) slots.insert(entry.slotOrFlag);
+            sums.evaluate += entry.slotOrFlag == gpu::kSlotEvaluate;
+        }
+    }
+    sums.slots = static_cast<std::uint32_t>(slots.size());
+    if (!slots.empty()) {
+        EXPECT_EQ(*slots.rbegin(), sums.slots - 1) << "slots were left out";
+    }
+    return sums;
+}
+
+void checkStatistics(const FrameResult& r, const Sums& sums) {
+    const FrameStatistics& s = r.statistics;
+    EXPECT_EQ(s.listEntries, r.counters.listEntries);
+    EXPECT_EQ(s.visibilitySlots, r.counters.visibilitySlots);
+    EXPECT_EQ(s.listOverflowTiles, sums.withoutSpace);
+    EXPECT_EQ(s.accurateExceedsApproximate, 0u);
+    EXPECT_EQ(s.tilesWithGeometry, sums.geometry);
+    EXPECT_EQ(s.approximateEntries, sums.approximate);
+    EXPECT_EQ(s.earlyEntries, sums.early);
+    EXPECT_EQ(s.earlyCastingEntries, sums.casting);
+    EXPECT_EQ(s.maxLightsInTile, sums.most);
+    EXPECT_EQ(s.slotOverflowEntries, sums.evaluate);
+    EXPECT_EQ(s.evaluateTiles, sums.evaluateTiles);
+    EXPECT_EQ(s.finalEntries, sums.finals);
+    EXPECT_EQ(s.finalSlotEntries, sums.slots);
+    EXPECT_GE(s.recommendedListEntries, r.counters.listEntries);
+    EXPECT_GE(s.recommendedVisibilitySlots, r.counters.visibilitySlots);
+}
+
+}  // namespace
+
+void checkCounters(const FrameResult& r, const CheckOptions& options) {
+    const Sums sums = sumsOf(r, options.shadows);
+    const gpu::GpuCounters& c = r.counters;
+    EXPECT_EQ(c.accurateExceedsApproximate, 0u);
+    EXPECT_EQ(c.listOverflowTiles, sums.withoutSpace);
+    if (r.setup.reservation == ListReservation::Approximate) {
+        EXPECT_EQ(c.listEntries, sums.reservedApproximate);
+    } else if (r.setup.reservation == ListReservation::Accurate && sums.withoutSpace == 0) {
+        EXPECT_EQ(c.listEntries, sums.reservedAccurate);
+    } else if (r.setup.reservation == ListReservation::Accurate) {
+        EXPECT_GT(c.listEntries, sums.reservedAccurate);
+    }
+    if (!options.listOverflow) {
+        EXPECT_EQ(sums.withoutSpace, 0u);
+    }
+    if (options.shadows) {
+        EXPECT_EQ(c.slotOverflowEntries, sums.evaluate);
+        EXPECT_EQ(c.visibilitySlots, sums.slots + sums.evaluate);
+        EXPECT_EQ(sums.slots, std::min(c.visibilitySlots, r.slotCapacity));
+        EXPECT_EQ(r.evaluateTiles[0], gpu::kEvaluateRowTiles);
+        EXPECT_EQ(r.evaluateTiles[1], gpu::divideRoundingUp(sums.evaluateTiles, gpu::kEvaluateRowTiles));
+        EXPECT_EQ(r.evaluateTiles[2], 1u);
+        EXPECT_EQ(r.evaluateTiles[3], sums.evaluateTiles);
+        if (!options.slotOverflow) {
+            EXPECT_EQ(sums.evaluate, 0u);
+        }
+    }
+    if (r.hasStatistics) checkStatistics(r, sums);
+}
+
+Checked checkFrame(const FrameInput& input, const FrameResult& result, const CheckOptions& options) {
+    Checked out;
+    if (result.slotIds.empty()) {
+        ADD_FAILURE() << "the frame did not run";
+        return out;
+    }
+    const CameraModel camera = makeCameraModel(input.camera, input.widthPx, input.heightPx);
+    out.grid = makePixelGrid(camera, input.receivers);
+    const std::vector<LightModel> all = makeLightModels(input.lights, camera);
+    expectNone(checkGpuLights(all, camera, result.lights), "lights");
+    out.lights = orderLights(all, result.lights);
+    if (options.depths) expectNone(checkTileDepths(out.grid, result.depthRanges), "hierarchical depth");
+    out.expected = findLights(out.grid, out.lights, input.dropLightsFacedAway);
+    const ListBuffers lists = result.lists();
+    out.approximate = checkApproximate(out.grid, out.expected, out.lights.size(), result.groupMasks, lists);
+    expectNone(out.approximate.findings, "find lights approximate");
+    out.early = checkEarlyLists(out.expected, out.lights, lists);
+    expectNone(out.early.findings, "find lights accurate");
+    ListBuffers structure = lists;
+    if (!options.shadows) structure.finalCounts = {};
+    out.structure = checkStructure(structure, out.lights.size());
+    expectNone(out.structure.findings, "structure of the lists");
+    if (options.shadows) {
+        expectNone(checkEvaluateTiles(lists, result.evaluateTiles), "tiles to evaluate");
+        if (options.bytes) {
+            out.shadows = checkFinalLists(out.grid, out.lights, shadowInputOf(input, result.setup), lists,
+                                          options.slotOverflow);
+            expectNone(out.shadows.findings, "generate shadows");
+        }
+    }
+    checkCanaries(result, options.shadows);
+    checkCounters(result, options);
+    return out;
+}
+
+std::vector<std::vector<DecodedEntry>> decodeFinalLists(const FrameResult& r) {
+    std::vector<std::vector<DecodedEntry>> tiles(r.slotIds.size());
+    const ListBuffers lists = r.lists();
+    for (std::size_t tile = 0; tile < tiles.size(); ++tile) {
+        for (const FinalEntry& entry : finalEntries(lists, tile)) {
+            DecodedEntry decoded;
+            decoded.hostLight = r.lights[entry.light].hostIndex;
+            if (isSlot(entry.slotOrFlag)) {
+                const auto first = r.visibility.begin() + std::ptrdiff_t(entry.slotOrFlag) * gpu::kVisibilitySlotWords;
+                decoded.bytes.assign(first, first + gpu::kVisibilitySlotWords);
+            } else {
+                decoded.flag = entry.slotOrFlag;
+            }
+            tiles[tile].push_back(std::move(decoded));
+        }
+    }
+    return tiles;
+}
+
+std::vector<std::vector<std::uint32_t>> decodeEarlyLists(const FrameResult& r) {
+    std::vector<std::vector<std::uint32_t>> tiles(r.slotIds.size());
+    for (std::size_t tile = 0; tile < tiles.size(); ++tile) tiles[tile] = earlyLights(r.lists(), tile);
+    return tiles;
+}
+
+}  // namespace gnomon::test

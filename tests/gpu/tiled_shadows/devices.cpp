@@ -1,0 +1,129 @@
+#include "devices.h"
+
+#include <cctype>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+
+namespace gnomon::test {
+namespace {
+
+constexpr std::uint32_t kHostProviderSpirv[] = {
+#include "generate_shadows_host_provider.spv.h"
+};
+
+/// SwiftShader comes with Debian's chromium and is known to no loader by itself.
+void addSoftwareDrivers() {
+    const char* swiftShader = "/usr/lib/chromium/vk_swiftshader_icd.json";
+    if (std::filesystem::exists(swiftShader)) setenv("VK_ADD_DRIVER_FILES", swiftShader, 0);
+}
+
+struct Session {
+    bool validation = true;
+    std::optional<renderer::VulkanInstance> instance;
+    std::vector<renderer::DeviceInfo> infos;
+    std::vector<std::unique_ptr<TestDevice>> devices;  // made when first used
+};
+
+Session& session() {
+    static Session s;
+    if (s.instance) return s;
+    addSoftwareDrivers();
+    try {
+        s.instance.emplace(renderer::InstanceDesc{.validation = true});
+    } catch (const renderer::GpuError& error) {
+        std::printf("without validation: %s\n", error.what());
+        s.validation = false;
+        s.instance.emplace(renderer::InstanceDesc{.validation = false});
+    }
+    for (const renderer::DeviceInfo& info : s.instance->listDevices()) {
+        if (info.suitable)
+            s.infos.push_back(info);
+        else
+            std::printf("skipped: %s\n", info.missing.c_str());
+    }
+    s.devices.resize(s.infos.size());
+    return s;
+}
+
+}  // namespace
+
+renderer::VulkanInstance& testInstance() { return *session().instance; }
+bool validationPresent() { return session().validation; }
+
+bool fullRun() {
+    const char* value = std::getenv("GNOMON_FULL");
+    return value != nullptr && *value != '\0' && *value != '0';
+}
+
+std::vector<std::size_t> deviceIndices() {
+    std::vector<std::size_t> indices;
+    for (std::size_t i = 0; i < session().infos.size(); ++i) indices.push_back(i);
+    return indices;
+}
+
+std::string deviceName(const ::testing::TestParamInfo<std::size_t>& info) {
+    std::string name;
+    for (const char c : session().infos[info.param].name) {
+        if (c == '(') break;
+        if (std::isalnum(static_cast<unsigned char>(c)) != 0) name += c;
+    }
+    return name + std::to_string(info.param);
+}
+
+TestDevice::TestDevice(const renderer::DeviceInfo& info)
+    : device_(std::make_unique<renderer::Device>(testInstance(), info)) {
+    std::printf("device: %s, %s, subgroups of %u (%u to %u), validation %s\n", info.name.c_str(), info.driver.c_str(),
+                info.subgroupSize, info.minSubgroupSize, info.maxSubgroupSize, validationPresent() ? "on" : "off");
+}
+
+ContextDesc TestDevice::contextDesc(const ContextSetup& setup) const {
+    ContextDesc desc;
+    desc.instance = testInstance().handle();
+    desc.physicalDevice = device_->physical();
+    desc.device = device_->handle();
+    desc.getInstanceProcAddr = vkGetInstanceProcAddr;
+    desc.pipelineCache = device_->pipelineCache();
+    static thread_local std::uint32_t family = 0;  // must outlive the call of Context::create
+    family = device_->queueFamily();
+    desc.queueFamilies = std::span(&family, 1);
+    desc.debugLabels = testInstance().debugLabels();
+    desc.subgroupSize = setup.subgroupSize;
+    desc.filter = setup.filter;
+    desc.pcfRadius = setup.pcfRadius;
+    desc.listReservation = setup.reservation;
+    desc.fixedListEntriesPerTile = setup.fixedEntries;
+    desc.hostDepthPyramid = setup.hostDepthPyramid;
+    if (setup.checkerboard) desc.generateShadowsSpirv = kHostProviderSpirv;
+    return desc;
+}
+
+const Context* TestDevice::context(const ContextSetup& setup) {
+    char key[64];
+    std::snprintf(key, sizeof(key), "%d %u %d %u %u %d %d", int(setup.filter), setup.pcfRadius, int(setup.reservation),
+                  setup.fixedEntries, setup.subgroupSize, int(setup.hostDepthPyramid), int(setup.checkerboard));
+    std::unique_ptr<Context>& context = contexts_[key];
+    if (context == nullptr) {
+        const Result made = Context::create(contextDesc(setup), context);
+        EXPECT_TRUE(made.ok()) << made.message();
+    }
+    return context.get();
+}
+
+TestDevice& GpuTest::device() {
+    std::unique_ptr<TestDevice>& slot = session().devices[GetParam()];
+    if (slot == nullptr) slot = std::make_unique<TestDevice>(session().infos[GetParam()]);
+    return *slot;
+}
+
+void GpuTest::SetUp() { testInstance().messages().clear(); }
+
+void GpuTest::TearDown() {
+    for (const std::string& message : testInstance().messages().messages()) ADD_FAILURE() << message;
+    testInstance().messages().clear();
+}
+
+TEST(Devices, AtLeastOneIsFound) { EXPECT_FALSE(deviceIndices().empty()); }
+
+}  // namespace gnomon::test

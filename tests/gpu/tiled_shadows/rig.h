@@ -1,0 +1,108 @@
+#pragma once
+// One view on one device: uploads a frame's input, runs the phases, reads everything back.
+
+#include <memory>
+#include <vector>
+
+#include "devices.h"
+#include "gpu_interface/structs.h"
+#include "reference/lists.h"
+#include "reference/receivers.h"
+#include "reference/test_shadows.h"
+#include "renderer/gpu/resources.h"
+
+namespace gnomon::test {
+
+/// Every word of every device buffer of the library holds this before a frame.
+inline constexpr std::uint32_t kCanary = 0xA5C3F00Du;
+inline constexpr std::uint32_t kGuardBytes = 1024;
+
+struct FrameInput {
+    std::uint32_t widthPx = 64, heightPx = 40;  ///< active extent
+    std::uint32_t viewportXPx = 0, viewportYPx = 0;
+    Camera camera;
+    std::vector<Light> lights;
+    reference::Receivers receivers;  ///< of the active extent; images for what is not empty
+    std::shared_ptr<const reference::TestShadows> shadows;
+    bool dropLightsFacedAway = true;
+    float subsurfaceBiasMetres = 0.02f;
+    std::vector<float> depthPyramid;  ///< with ContextSetup::hostDepthPyramid: min and max device depth per shadow tile
+};
+
+/// CPU copies of everything that the library wrote.
+struct FrameResult {
+    PrepareReport report;
+    gpu::GpuFrame constants{};
+    std::vector<gpu::GpuLight> lights;
+    std::vector<float> depthRanges;
+    std::vector<std::uint32_t> groupMasks, slotIds, approximateCounts, earlyList, earlyCounts, finalList, finalCounts,
+        visibility, evaluateTiles;  ///< per-tile ones: of the active tiles, the others whole
+    gpu::GpuCounters counters{};
+    FrameStatistics statistics;
+    bool hasStatistics = false;
+    std::uint32_t listCapacity = 0, slotCapacity = 0;
+    std::size_t brokenGuards = 0;     ///< words outside the contents of a buffer that are no longer kCanary
+    std::size_t beyondTiles = 0;      ///< words of per-tile arrays beyond the active tiles, likewise
+    ContextSetup setup;
+
+    [[nodiscard]] std::uint32_t tilesX() const { return constants.tileCounts.x; }
+    [[nodiscard]] std::uint32_t tilesY() const { return constants.tileCounts.y; }
+    [[nodiscard]] reference::ListBuffers lists() const;
+};
+
+struct RunOptions {
+    bool shadows = true;   ///< record phase 4
+    bool endFrame = true;  ///< record the statistics
+    bool fill = true;      ///< fill the library's buffers with kCanary first
+};
+
+class Rig {
+public:
+    /// Images are larger than the view by 24 x 16 pixels, for viewport offsets. `desc`: guardBytes is set here.
+    Rig(TestDevice& device, const ContextSetup& setup, const ViewDesc& desc);
+    ~Rig();
+    Rig(const Rig&) = delete;
+    Rig& operator=(const Rig&) = delete;
+
+    /// Waits for the device. Fails the test where a call of the library fails.
+    FrameResult run(const FrameInput& input, const RunOptions& options = {});
+    /// Phase 1 alone; images are made, nothing is recorded.
+    Result begin(const FrameInput& input, PrepareReport* report = nullptr);
+    /// What beginFrame() is given, to be spoilt by tests of misuse; valid until the next call.
+    FrameDesc frameDesc(const FrameInput& input);
+
+    [[nodiscard]] View& view() { return *view_; }
+    [[nodiscard]] bool ok() const { return view_ != nullptr; }
+    [[nodiscard]] std::uint64_t lastFrame() const { return nextFrame_ - 1; }
+
+private:
+    struct Upload;
+    void makeImages(const FrameInput& input);
+    void recordUploads(VkCommandBuffer commands, const FrameInput& input);
+    void recordFill(VkCommandBuffer commands) const;
+    void recordPhases(VkCommandBuffer commands, const RunOptions& options) const;
+    void recordReadback(VkCommandBuffer commands);
+    void decode(FrameResult& result) const;
+    [[nodiscard]] std::vector<std::uint32_t> contents(const char* name) const;
+
+    TestDevice& device_;
+    ContextSetup setup_;
+    ViewDesc desc_;
+    std::unique_ptr<View> view_;
+    std::uint64_t nextFrame_ = 1;
+    renderer::GpuImage depth_, faceNormals_, receiverFlags_, pyramid_;
+    std::vector<renderer::GpuImage> atlases_;
+    std::vector<ShadowAtlas> atlasDescs_;
+    std::shared_ptr<const reference::TestShadows> shadows_;  // those in atlases_
+    bool atlasesUploaded_ = false;
+    std::vector<renderer::Buffer> staging_;
+    struct Range {
+        std::string name;
+        VkDeviceSize offset = 0, bytes = 0;  // in readback_; guards included
+        bool guarded = false;
+    };
+    std::vector<Range> ranges_;
+    renderer::Buffer readback_;
+};
+
+}  // namespace gnomon::test

@@ -1,0 +1,69 @@
+#include "scenes.h"
+
+namespace gnomon::test {
+
+using namespace reference;
+
+void renderRoom(FrameInput& input, const RoomSetup& setup) {
+    Random random(setup.seed);
+    input.widthPx = setup.widthPx;
+    input.heightPx = setup.heightPx;
+    input.camera = makeCamera(setup.camera, setup.widthPx, setup.heightPx);
+    input.receivers = renderReceivers(makeRoom(random, setup.objects), input.camera, setup.widthPx, setup.heightPx);
+}
+
+FrameInput makeRoomFrame(const RoomSetup& setup) {
+    FrameInput input;
+    Random random(setup.seed);
+    const Shapes shapes = makeRoom(random, setup.objects);
+    input.widthPx = setup.widthPx;
+    input.heightPx = setup.heightPx;
+    input.camera = makeCamera(setup.camera, setup.widthPx, setup.heightPx);
+    input.lights = makeLights(random, setup.camera, setup.lights);
+    input.shadows = std::make_shared<TestShadows>(buildShadows(shapes, input.lights, setup.shadows));
+    input.receivers = renderReceivers(shapes, input.camera, setup.widthPx, setup.heightPx);
+    return input;
+}
+
+std::shared_ptr<const TestShadows> sharedPlainShadows() {
+    static const auto shared = [] {
+        Light light;
+        light.firstShadowView = 0;
+        light.position[1] = 2.5f;
+        ShadowSetup setup;
+        setup.viewSizePx = 8;
+        setup.atlasCount = setup.layers = 1;
+        return std::make_shared<const TestShadows>(
+            buildShadows({plane({0, 0, 0}, {0, 1, 0}), ball({0, 1, 0}, 0.5)}, std::span(&light, 1), setup));
+    }();
+    return shared;
+}
+
+FrameInput makeQuickFrame(const RoomSetup& setup) {
+    FrameInput input;
+    Random random(setup.seed);
+    const Shapes shapes = makeRoom(random, setup.objects);
+    input.widthPx = setup.widthPx;
+    input.heightPx = setup.heightPx;
+    input.camera = makeCamera(setup.camera, setup.widthPx, setup.heightPx);
+    input.lights = makeLights(random, setup.camera, setup.lights);
+    for (Light& light : input.lights)
+        if (light.firstShadowView != kNoShadowViews) light.firstShadowView = 0;
+    input.shadows = sharedPlainShadows();
+    input.receivers = renderReceivers(shapes, input.camera, setup.widthPx, setup.heightPx);
+    return input;
+}
+
+ViewDesc viewDescFor(const FrameInput& input) {
+    ViewDesc desc;
+    desc.maxWidthPx = input.widthPx;
+    desc.maxHeightPx = input.heightPx;
+    desc.maxShadowViews = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(input.shadows->views.size()));
+    const std::uint32_t tiles = gpu::divideRoundingUp(input.widthPx, gpu::kShadowTileSizePx) *
+                                gpu::divideRoundingUp(input.heightPx, gpu::kShadowTileSizePx);
+    desc.listEntries = tiles * 96;
+    desc.visibilitySlots = tiles * 48;
+    return desc;
+}
+
+}  // namespace gnomon::test

@@ -21,7 +21,7 @@ struct RendererDesc {
     std::uint32_t widthPx = 1280, heightPx = 720;
     Filter filter = Filter::Pcf;
     std::uint32_t pcfRadius = 1;
-    ListReservation listReservation = ListReservation::Approximate;
+    ListReservation listReservation = ListReservation::Accurate;
     std::uint32_t fixedListEntriesPerTile = 32;  // with ListReservation::Fixed
     std::uint32_t subgroupSize = 0;              // 0: the device's own
     std::uint32_t listEntries = 0, visibilitySlots = 0;  // pools; 0: the library's defaults

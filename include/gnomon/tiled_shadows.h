@@ -59,7 +59,7 @@ struct ContextDesc {
     std::uint32_t subgroupSize = 0;
     Filter filter = Filter::Pcf;
     std::uint32_t pcfRadius = 1;  ///< texels, 1 to 3
-    ListReservation listReservation = ListReservation::Approximate;
+    ListReservation listReservation = ListReservation::Accurate;
     std::uint32_t fixedListEntriesPerTile = 0;  ///< for ListReservation::Fixed, 1 to 1024
     /// The host gives a two-channel pyramid level (min, max device depth per 8x8 tile) instead of having one built.
     bool hostDepthPyramid = false;

@@ -87,7 +87,7 @@ constexpr Planted kPlanted[] = {
     {"src/new.cpp", "#include \"../reference/prepare.h\"", false},
     {"src/new.cpp", "#include \"reference/prepare.h\"", false},
     {"src/new.cpp", "#include SOME_MACRO", false},
-    {"src/generate_shadows/new.glsl", "#include GNOMON_HOST_PROVIDER", true},
+    {"src/generate_shadows/new.glsl", "#include \"gnomon_host_provider.glsl\"", true},
     {"src/generate_shadows/new.glsl", "#include \"hard.glsl\"", true},
     {"src/generate_shadows/new.glsl", "#include \"renderer/lighting/shade.glsl\"", false},
     {"src/generate_shadows/new.glsl", "#include \"no/such/file.glsl\"", false},

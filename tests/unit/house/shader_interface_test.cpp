@@ -1,0 +1,386 @@
+// CPU and GPU agree: the compiled shaders' structures, bindings, work group sizes, specialization constants and
+// capabilities against the C++ that fills them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <optional>
+#include <type_traits>
+
+#include "gpu_interface/numbers.h"
+#include "gpu_interface/structs.h"
+#include "renderer/lighting/lighting_data.h"
+#include "unit/house/fake_vulkan.h"
+#include "unit/house/reflection.h"
+
+namespace gnomon::house {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace gpu;
+using renderer::HostLight;
+using renderer::SceneConstants;
+
+constexpr std::uint32_t kListsSet = 0, kReceiversSet = 1, kShadowmapsSet = 2, kHostSet = 3;
+
+// --- What C++ says ---------------------------------------------------------------------------------------------------
+
+template <typename T>
+MemberLayout memberAt(std::size_t offset) {
+    constexpr bool unsignedWords = std::is_same_v<T, uint> || std::is_same_v<T, uvec4>;
+    return {offset, sizeof(T), unsignedWords ? 'u' : 'f'};
+}
+#define MEMBER(type, name) memberAt<decltype(type::name)>(offsetof(type, name))
+
+std::vector<MemberLayout> gpuLight() {
+    return {MEMBER(GpuLight, positionWs),   MEMBER(GpuLight, rangeMetres), MEMBER(GpuLight, directionWs),
+            MEMBER(GpuLight, cosOuter),     MEMBER(GpuLight, positionVs),  MEMBER(GpuLight, sinOuter),
+            MEMBER(GpuLight, directionVs),  MEMBER(GpuLight, sourceRadius), MEMBER(GpuLight, typeAndFlags),
+            MEMBER(GpuLight, lightMask),    MEMBER(GpuLight, shadowView),  MEMBER(GpuLight, hostIndex),
+            MEMBER(GpuLight, lightFade),    MEMBER(GpuLight, shadowFade),  MEMBER(GpuLight, biasMetres),
+            MEMBER(GpuLight, reserved)};
+}
+
+std::vector<MemberLayout> gpuShadowView() {
+    return {MEMBER(GpuShadowView, clipFromWorld),    MEMBER(GpuShadowView, pxFromNdcScale),
+            MEMBER(GpuShadowView, pxFromNdcOffset),  MEMBER(GpuShadowView, rectMinPx),
+            MEMBER(GpuShadowView, rectMaxPx),        MEMBER(GpuShadowView, depthFromLinearA),
+            MEMBER(GpuShadowView, depthFromLinearB), MEMBER(GpuShadowView, flags),
+            MEMBER(GpuShadowView, atlasAndLayer),    MEMBER(GpuShadowView, texelMetres),
+            MEMBER(GpuShadowView, atlasPerTexelX),   MEMBER(GpuShadowView, atlasPerTexelY),
+            MEMBER(GpuShadowView, reserved)};
+}
+
+std::vector<MemberLayout> gpuFrame() {
+    return {MEMBER(GpuFrame, eyeWs),   MEMBER(GpuFrame, axisXWs),         MEMBER(GpuFrame, axisYWs),
+            MEMBER(GpuFrame, axisZWs), MEMBER(GpuFrame, viewXyFromPixel), MEMBER(GpuFrame, viewDepthFromDevice),
+            MEMBER(GpuFrame, zBins),   MEMBER(GpuFrame, extent),          MEMBER(GpuFrame, tileCounts),
+            MEMBER(GpuFrame, lightCounts), MEMBER(GpuFrame, pools),       MEMBER(GpuFrame, shadows),
+            MEMBER(GpuFrame, random)};
+}
+
+std::vector<MemberLayout> gpuCounters() {
+    return {MEMBER(GpuCounters, listEntries),         MEMBER(GpuCounters, visibilitySlots),
+            MEMBER(GpuCounters, listOverflowTiles),   MEMBER(GpuCounters, slotOverflowEntries),
+            MEMBER(GpuCounters, accurateExceedsApproximate), MEMBER(GpuCounters, tilesWithGeometry),
+            MEMBER(GpuCounters, approximateEntries),  MEMBER(GpuCounters, earlyEntries),
+            MEMBER(GpuCounters, earlyCastingEntries), MEMBER(GpuCounters, finalEntries),
+            MEMBER(GpuCounters, finalSlotEntries),    MEMBER(GpuCounters, maxLightsInTile)};
+}
+
+std::vector<MemberLayout> gpuEvaluateHead() {
+    return {MEMBER(GpuEvaluateHead, groupCountX), MEMBER(GpuEvaluateHead, groupCountY),
+            MEMBER(GpuEvaluateHead, groupCountZ), MEMBER(GpuEvaluateHead, tileCount)};
+}
+
+std::vector<MemberLayout> hostLight() {
+    return {MEMBER(HostLight, intensity), MEMBER(HostLight, coneScale), MEMBER(HostLight, coneOffset),
+            MEMBER(HostLight, reserved0), MEMBER(HostLight, reserved1), MEMBER(HostLight, reserved2)};
+}
+
+std::vector<MemberLayout> sceneConstants() {
+    return {MEMBER(SceneConstants, skyRadiance), MEMBER(SceneConstants, groundRadiance)};
+}
+
+PartLayout structAt(std::size_t offset, std::vector<MemberLayout> members) { return {offset, 0, false, std::move(members)}; }
+PartLayout arrayAt(std::size_t offset, std::size_t stride, std::vector<MemberLayout> members) {
+    return {offset, stride, true, std::move(members)};
+}
+
+using Key = std::pair<std::uint32_t, std::uint32_t>;  // set, binding
+
+// The blocks of every buffer, as C++ fills them.
+const std::map<Key, std::vector<PartLayout>>& blocks() {
+    const PartLayout words = arrayAt(0, 4, {memberAt<uint>(0)});
+    static const std::map<Key, std::vector<PartLayout>> all = {
+        {{kListsSet, kBindFrame}, {structAt(0, gpuFrame())}},
+        {{kListsSet, kBindLights}, {arrayAt(0, sizeof(GpuLight), gpuLight())}},
+        {{kListsSet, kBindZBins}, {words}},
+        {{kListsSet, kBindTileLightMasks}, {words}},
+        {{kListsSet, kBindTileGroupLightMasks}, {words}},
+        {{kListsSet, kBindTileDepthRanges}, {arrayAt(0, 8, {memberAt<vec2>(0)})}},
+        {{kListsSet, kBindTileLightSlotIds}, {words}},
+        {{kListsSet, kBindApproximateCounts}, {words}},
+        {{kListsSet, kBindEarlyList}, {words}},
+        {{kListsSet, kBindEarlyCounts}, {words}},
+        {{kListsSet, kBindFinalList}, {words}},
+        {{kListsSet, kBindFinalCounts}, {words}},
+        {{kListsSet, kBindVisibility}, {words}},
+        {{kListsSet, kBindEvaluateTiles},
+         {structAt(0, gpuEvaluateHead()), arrayAt(sizeof(GpuEvaluateHead), 4, {memberAt<uint>(0)})}},
+        {{kListsSet, kBindCounters}, {structAt(0, gpuCounters())}},
+        {{kShadowmapsSet, kBindShadowViews}, {arrayAt(0, sizeof(GpuShadowView), gpuShadowView())}},
+        {{kHostSet, 5}, {arrayAt(0, sizeof(HostLight), hostLight())}},
+        {{kHostSet, 6}, {structAt(0, sceneConstants())}},
+    };
+    return all;
+}
+
+// --- What the shaders say --------------------------------------------------------------------------------------------
+
+std::vector<ShaderLayout> shadersIn(const char* directory, const std::string& prefix = {}) {
+    std::vector<ShaderLayout> out;
+    for (const auto& entry : fs::directory_iterator(fs::path(GNOMON_BINARY_DIR) / directory)) {
+        const std::string name = entry.path().filename().string();
+        if (name.ends_with(".spv") && name.starts_with(prefix)) out.push_back(reflect(entry.path()));
+    }
+    std::ranges::sort(out, {}, &ShaderLayout::name);
+    return out;
+}
+
+const std::vector<ShaderLayout>& libraryShaders() {
+    static const std::vector<ShaderLayout> all = shadersIn("src/shaders");
+    return all;
+}
+
+const std::vector<ShaderLayout>& lightingShaders() {
+    static const std::vector<ShaderLayout> all = shadersIn("renderer/shaders", "lighting_");
+    return all;
+}
+
+std::vector<ShaderLayout> libraryAndLighting() {
+    std::vector<ShaderLayout> all = libraryShaders();
+    all.insert(all.end(), lightingShaders().begin(), lightingShaders().end());
+    return all;
+}
+
+std::optional<ShaderLayout> shaderNamed(const std::string& name) {
+    for (const ShaderLayout& shader : libraryAndLighting()) {
+        if (shader.name == name) return shader;
+    }
+    return std::nullopt;
+}
+
+std::string whereIs(const ShaderLayout& shader, const ResourceLayout& resource) {
+    return shader.name + ", set " + std::to_string(resource.set) + ", binding " + std::to_string(resource.binding);
+}
+
+// Every difference between a shader's block and C++, in words; empty if there is none.
+std::string differences(const std::vector<PartLayout>& shader, const std::vector<PartLayout>& cpp) {
+    if (shader.size() != cpp.size()) return "another number of parts; ";
+    std::string out;
+    for (std::size_t i = 0; i < cpp.size(); ++i) {
+        const std::string part = "part " + std::to_string(i);
+        if (shader[i].offset != cpp[i].offset) out += part + ": offset; ";
+        if (shader[i].arrayStride != cpp[i].arrayStride) out += part + ": array stride; ";
+        if (shader[i].runtimeArray != cpp[i].runtimeArray) out += part + ": array; ";
+        if (shader[i].members.size() != cpp[i].members.size()) {
+            out += part + ": number of members; ";
+            continue;
+        }
+        for (std::size_t m = 0; m < cpp[i].members.size(); ++m) {
+            if (shader[i].members[m] != cpp[i].members[m]) out += part + ", member " + std::to_string(m) + "; ";
+        }
+    }
+    return out;
+}
+
+TEST(ShaderInterface, AllShadersAreSeen) {
+    std::vector<std::string> names;
+    for (const ShaderLayout& shader : libraryAndLighting()) names.push_back(shader.name);
+    for (const char* name : {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "generate_shadows",
+                             "gather_statistics", "lighting_deferred", "lighting_evaluate", "lighting_inline"}) {
+        EXPECT_NE(std::ranges::find(names, name), names.end()) << name;
+    }
+}
+
+TEST(ShaderInterface, MembersStandWhereCppPutsThem) {
+    std::map<Key, int> seen;
+    for (const ShaderLayout& shader : libraryAndLighting()) {
+        for (const ResourceLayout& resource : shader.resources) {
+            if (resource.parts.empty()) continue;
+            const auto expected = blocks().find({resource.set, resource.binding});
+            ASSERT_NE(expected, blocks().end()) << whereIs(shader, resource) << ": C++ knows no such buffer";
+            EXPECT_EQ(differences(resource.parts, expected->second), "") << whereIs(shader, resource);
+            ++seen[expected->first];
+        }
+    }
+    for (const auto& [key, parts] : blocks()) {
+        EXPECT_GT(seen[key], 0) << "no shader uses set " << key.first << ", binding " << key.second;
+    }
+}
+
+// The whole of a structure is in its members: no byte is left out of the tables above.
+TEST(ShaderInterface, TablesCoverTheStructures) {
+    const auto bytes = [](const std::vector<MemberLayout>& members) {
+        std::size_t sum = 0;
+        for (const MemberLayout& m : members) sum += m.bytes;
+        return sum;
+    };
+    EXPECT_EQ(bytes(gpuLight()), sizeof(GpuLight));
+    EXPECT_EQ(bytes(gpuShadowView()), sizeof(GpuShadowView));
+    EXPECT_EQ(bytes(gpuFrame()), sizeof(GpuFrame));
+    EXPECT_EQ(bytes(gpuCounters()), sizeof(GpuCounters));
+    EXPECT_EQ(bytes(gpuEvaluateHead()), sizeof(GpuEvaluateHead));
+    EXPECT_EQ(bytes(hostLight()), sizeof(HostLight));
+    EXPECT_EQ(bytes(sceneConstants()), sizeof(SceneConstants));
+}
+
+// The comparison above can fail: each difference planted into a real shader's layout is told.
+TEST(ShaderInterface, DifferencesAreTold) {
+    const std::optional<ShaderLayout> shader = shaderNamed("generate_shadows");
+    ASSERT_TRUE(shader);
+    const auto lights = std::ranges::find_if(shader->resources, [](const ResourceLayout& r) {
+        return r.set == kListsSet && r.binding == kBindLights;
+    });
+    ASSERT_NE(lights, shader->resources.end());
+    const std::vector<PartLayout>& cpp = blocks().at({kListsSet, kBindLights});
+    const auto planted = [&](const std::function<void(PartLayout&)>& change) {
+        std::vector<PartLayout> parts = lights->parts;
+        change(parts[0]);
+        return differences(parts, cpp);
+    };
+    EXPECT_EQ(planted([](PartLayout&) {}), "");
+    EXPECT_NE(planted([](PartLayout& p) { p.offset += 4; }), "");
+    EXPECT_NE(planted([](PartLayout& p) { p.arrayStride = 112; }), "");
+    EXPECT_NE(planted([](PartLayout& p) { p.members.pop_back(); }), "");
+    EXPECT_NE(planted([](PartLayout& p) { std::swap(p.members[1], p.members[2]); }), "");
+    EXPECT_NE(planted([](PartLayout& p) { p.members[8].kind = 'f'; }), "");
+    EXPECT_NE(planted([](PartLayout& p) { p.members[0].bytes = 16; }), "");
+}
+
+// Sets and bindings exist in the layouts that Context really creates, with the same type of descriptor.
+TEST(ShaderInterface, BindingsAreThoseOfTheContext) {
+    FakeVulkan vulkan;
+    std::unique_ptr<Context> context;
+    ASSERT_TRUE(Context::create(vulkan.desc(), context));
+    const FakeVulkan::SetLayout* layouts[] = {vulkan.find(context->listsSetLayout()),
+                                              vulkan.find(context->receiversSetLayout()),
+                                              vulkan.find(context->shadowmapsSetLayout())};
+    const std::size_t counts[] = {kListsBindingCount, kReceiversBindingCount, kShadowmapsBindingCount};
+    for (std::size_t set = 0; set < 3; ++set) {
+        ASSERT_NE(layouts[set], nullptr);
+        EXPECT_EQ(layouts[set]->bindings.size(), counts[set]);
+    }
+    for (const ShaderLayout& shader : libraryAndLighting()) {
+        for (const ResourceLayout& resource : shader.resources) {
+            if (resource.set >= kHostSet) continue;
+            const auto& bindings = layouts[resource.set]->bindings;
+            const auto found = std::ranges::find(bindings, resource.binding, &FakeVulkan::Binding::binding);
+            ASSERT_NE(found, bindings.end()) << whereIs(shader, resource);
+            EXPECT_EQ(found->type, resource.type) << whereIs(shader, resource);
+            EXPECT_EQ(found->count, resource.count) << whereIs(shader, resource);
+        }
+    }
+}
+
+// The library's own passes stay within its three sets; lighting adds one of the host.
+TEST(ShaderInterface, SetsAreKnown) {
+    for (const ShaderLayout& shader : libraryShaders()) {
+        for (const ResourceLayout& r : shader.resources) EXPECT_LE(r.set, kShadowmapsSet) << whereIs(shader, r);
+        EXPECT_EQ(shader.pushConstantBlocks, 0u) << shader.name;
+    }
+    for (const ShaderLayout& shader : lightingShaders()) {
+        for (const ResourceLayout& r : shader.resources) EXPECT_LE(r.set, kHostSet) << whereIs(shader, r);
+    }
+}
+
+std::size_t resourcesIn(const ShaderLayout& shader, std::uint32_t set) {
+    return static_cast<std::size_t>(std::ranges::count(shader.resources, set, &ResourceLayout::set));
+}
+
+// The registers that the technique saves are saved only if the main lighting pipeline cannot sample a shadowmap.
+TEST(ShaderInterface, MainLightingSeesNoShadowmap) {
+    const std::optional<ShaderLayout> deferred = shaderNamed("lighting_deferred");
+    ASSERT_TRUE(deferred);
+    EXPECT_EQ(resourcesIn(*deferred, kShadowmapsSet), 0u);
+    EXPECT_GT(resourcesIn(*deferred, kListsSet), 0u);
+    for (const char* name : {"lighting_evaluate", "lighting_inline", "generate_shadows"}) {
+        const std::optional<ShaderLayout> shader = shaderNamed(name);
+        ASSERT_TRUE(shader) << name;
+        EXPECT_EQ(resourcesIn(*shader, kShadowmapsSet), kShadowmapsBindingCount) << name;
+    }
+    for (const char* name : {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "gather_statistics"}) {
+        const std::optional<ShaderLayout> shader = shaderNamed(name);
+        ASSERT_TRUE(shader) << name;
+        EXPECT_EQ(resourcesIn(*shader, kShadowmapsSet), 0u) << name;
+    }
+}
+
+TEST(ShaderInterface, WorkGroupsAre64Lanes) {
+    for (const ShaderLayout& shader : libraryAndLighting()) {
+        ASSERT_TRUE(shader.compute) << shader.name;
+        EXPECT_EQ(shader.workGroup[0], kWorkGroupSize) << shader.name;
+        EXPECT_EQ(shader.workGroup[1], 1u) << shader.name;
+        EXPECT_EQ(shader.workGroup[2], 1u) << shader.name;
+    }
+}
+
+TEST(ShaderInterface, ConstantsAreKnown) {
+    FakeVulkan vulkan;
+    std::unique_ptr<Context> context;
+    ASSERT_TRUE(Context::create(vulkan.desc(), context));
+    const std::size_t given = context->specializationValues().size();
+    EXPECT_EQ(given, kSpecHostDepthPyramid + 1u);
+    for (const ShaderLayout& shader : libraryShaders()) {
+        for (std::uint32_t id : shader.constantIds) EXPECT_LT(id, given) << shader.name;
+    }
+    for (const ShaderLayout& shader : lightingShaders()) {
+        for (std::uint32_t id : shader.constantIds) EXPECT_TRUE(id < given || id == kSpecFirstFree) << shader.name << " " << id;
+    }
+    for (const ShaderLayout& shader : libraryAndLighting()) {
+        EXPECT_EQ(std::ranges::count(shader.constantIds, kSpecSubgroupSize), 1) << shader.name;
+    }
+}
+
+// Constants reach every pipeline by their ids, and full subgroups are asked for.
+TEST(ShaderInterface, PipelinesGetTheConstants) {
+    FakeVulkan vulkan;
+    ContextDesc desc = vulkan.desc();
+    desc.subgroupSize = 64;
+    desc.filter = Filter::Hard;
+    desc.listReservation = ListReservation::Accurate;
+    desc.pcfRadius = 3;
+    desc.hostDepthPyramid = true;
+    std::unique_ptr<Context> context;
+    ASSERT_TRUE(Context::create(desc, context));
+    std::vector<std::uint32_t> expected(5);
+    expected[kSpecSubgroupSize] = 64;
+    expected[kSpecProvider] = kProviderHard;
+    expected[kSpecListReservation] = kReserveAccurate;
+    expected[kSpecPcfRadius] = 3;
+    expected[kSpecHostDepthPyramid] = 1;
+    EXPECT_TRUE(std::ranges::equal(context->specializationValues(), expected));
+    ASSERT_EQ(vulkan.pipelines.size(), 5u);
+    for (const FakeVulkan::Pipeline& pipeline : vulkan.pipelines) {
+        EXPECT_EQ(pipeline.constants, expected);
+        EXPECT_EQ(pipeline.requiredSubgroupSize, 64u);
+        EXPECT_NE(pipeline.stageFlags & VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT, 0u);
+    }
+}
+
+// Software devices and older hardware have no 8-, 16- or 64-bit types, no indexing of descriptors, no maintenance4.
+// docs/limits.md states this list.
+TEST(ShaderInterface, CapabilitiesAreFew) {
+    constexpr std::uint32_t kShader = 1, kGroupNonUniform = 61, kGroupNonUniformArithmetic = 63;
+    const std::vector<std::uint32_t> allowed = {kShader, kGroupNonUniform, kGroupNonUniformArithmetic};
+    for (const ShaderLayout& shader : libraryAndLighting()) {
+        for (std::uint32_t capability : shader.capabilities) {
+            EXPECT_NE(std::ranges::find(allowed, capability), allowed.end()) << shader.name << " needs " << capability;
+        }
+        EXPECT_FALSE(shader.capabilities.empty()) << shader.name;
+        EXPECT_LE(shader.spirvVersion, 0x00010500u) << shader.name;
+    }
+    for (const ShaderLayout& shader : shadersIn("renderer/shaders")) {
+        for (std::uint32_t capability : shader.capabilities) {
+            EXPECT_NE(std::ranges::find(allowed, capability), allowed.end()) << shader.name << " needs " << capability;
+        }
+    }
+}
+
+// What the widest shaders bind together: docs/limits.md states these numbers.
+TEST(ShaderInterface, DescriptorsAreFew) {
+    for (const ShaderLayout& shader : libraryAndLighting()) {
+        const auto count = [&](VkDescriptorType type) {
+            return std::ranges::count(shader.resources, type, &ResourceLayout::type);
+        };
+        EXPECT_LE(count(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 16) << shader.name;
+        EXPECT_LE(count(VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER), 2) << shader.name;
+        EXPECT_LE(count(VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE), 12) << shader.name;
+        EXPECT_LE(count(VK_DESCRIPTOR_TYPE_SAMPLER), 1) << shader.name;
+    }
+}
+
+}  // namespace
+}  // namespace gnomon::house

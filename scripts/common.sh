@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # Shared by demo.sh and test.sh: progress with elapsed times, and one plain sentence on failure.
 step_name="Starting"
 log_file=

@@ -25,7 +25,7 @@ struct Settings {
     bool validate = false;
     bool quiet = false;
     std::uint32_t listEntries = 0, visibilitySlots = 0;
-    std::string reservation = "approximate";
+    std::string reservation = "accurate";
     std::uint32_t subgroupSize = 0;
     std::string depth = "reversed";
     std::uint32_t atlas = 0;

@@ -22,7 +22,8 @@ VkResult make(Handle* out) {
 }
 
 template <typename Handle>
-VKAPI_ATTR void VKAPI_CALL destroy(VkDevice, Handle handle, const VkAllocationCallbacks*) {
+VKAPI_ATTR void VKAPI_CALL destroy(VkDevice device, Handle handle, const VkAllocationCallbacks*) {
+    if (device == VK_NULL_HANDLE) ++current->callsWithoutDevice;
     if (handle != VK_NULL_HANDLE) ++current->destroyed;
 }
 

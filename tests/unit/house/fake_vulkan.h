@@ -50,6 +50,7 @@ public:
     std::vector<SetLayout> setLayouts;
     std::vector<Pipeline> pipelines;
     std::uint32_t made = 0, destroyed = 0;
+    std::uint32_t callsWithoutDevice = 0;  // with a null VkDevice: a real driver crashes
 
     [[nodiscard]] const SetLayout* find(VkDescriptorSetLayout handle) const;
 };

@@ -19,6 +19,7 @@ void expectRefused(const FakeVulkan& vulkan, const ContextDesc& desc, Status sta
     EXPECT_THAT(result.message(), MatchesRegex("^.+\\.$")) << "not a sentence";
     EXPECT_EQ(context, nullptr);
     EXPECT_EQ(vulkan.made, vulkan.destroyed);
+    EXPECT_EQ(vulkan.callsWithoutDevice, 0u);
 }
 
 TEST(Refusal, TheFakeIsAccepted) {

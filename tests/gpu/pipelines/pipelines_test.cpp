@@ -1,0 +1,264 @@
+// Every variant of the library's pipelines, and the reference renderer's lighting pipelines with them, are made on every
+// Vulkan device found, with validation and without a message.
+//
+// Run a second time (see tests/CMakeLists.txt) on RADV's null device, which compiles for AMD hardware that is not there:
+// so the 64-wide variants are proven to compile. Nothing is executed here.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "gnomon/tiled_shadows.h"
+#include "gpu_interface/numbers.h"
+#include "renderer/gpu/pipeline.h"
+
+namespace gnomon::renderer {
+namespace {
+
+using ::testing::HasSubstr;
+
+bool onNullDevice() { return std::getenv("RADV_FORCE_FAMILY") != nullptr; }
+
+// Waiting crashes in RADV's null device (docs/driver-ledger.md), and nothing is ever submitted here.
+VKAPI_ATTR VkResult VKAPI_CALL doNotWait(VkDevice) { return VK_SUCCESS; }
+
+std::unique_ptr<VulkanInstance> makeInstance(const InstanceDesc& desc) {
+    auto instance = std::make_unique<VulkanInstance>(desc);
+    if (onNullDevice()) vkDeviceWaitIdle = doNotWait;
+    return instance;
+}
+
+class PipelinesTest : public ::testing::Test {
+protected:
+    // Null, with a printed reason, where no instance can be made.
+    static VulkanInstance* instance() {
+        static const std::unique_ptr<VulkanInstance> shared = [] {
+            for (const bool validation : {true, false}) {
+                try {
+                    return makeInstance({.validation = validation});
+                } catch (const GpuError& error) {
+                    std::printf("skipped%s: %s\n", validation ? " validation" : "", error.what());
+                }
+            }
+            return std::unique_ptr<VulkanInstance>();
+        }();
+        return shared.get();
+    }
+
+    void SetUp() override {
+        if (instance() == nullptr) GTEST_SKIP() << "skipped: no Vulkan instance";
+        for (const DeviceInfo& device : instance()->listDevices()) {
+            if (device.suitable) {
+                devices_.push_back(device);
+            } else {
+                std::printf("skipped: %s\n", device.missing.c_str());
+            }
+        }
+        if (devices_.empty()) GTEST_SKIP() << "skipped: no Vulkan device";
+        instance()->messages().clear();
+    }
+    void TearDown() override {
+        if (instance() == nullptr) return;
+        EXPECT_EQ(instance()->messages().count(), 0u);
+        instance()->messages().clear();
+    }
+
+    std::vector<DeviceInfo> devices_;
+};
+
+ContextDesc descOf(const Device& device, const std::uint32_t& family) {
+    ContextDesc desc;
+    desc.instance = device.instance().handle();
+    desc.physicalDevice = device.physical();
+    desc.device = device.handle();
+    desc.getInstanceProcAddr = vkGetInstanceProcAddr;
+    desc.pipelineCache = device.pipelineCache();
+    desc.queueFamilies = {&family, 1};
+    desc.debugLabels = device.instance().debugLabels();
+    return desc;
+}
+
+std::vector<std::uint32_t> sizesOf(const DeviceInfo& info) {
+    std::vector<std::uint32_t> sizes;
+    for (std::uint32_t size = std::max(info.minSubgroupSize, 4u);
+         size <= std::min(info.maxSubgroupSize, gpu::kWorkGroupSize); size *= 2) {
+        sizes.push_back(size);
+    }
+    return sizes;
+}
+
+// Filters, with the PCF radius where it matters.
+std::vector<ContextDesc> filtersOf(ContextDesc desc) {
+    std::vector<ContextDesc> out;
+    desc.filter = Filter::Hard;
+    out.push_back(desc);
+    desc.filter = Filter::Off;
+    out.push_back(desc);
+    desc.filter = Filter::Pcf;
+    for (desc.pcfRadius = 1; desc.pcfRadius <= gpu::kMaxPcfRadius; ++desc.pcfRadius) out.push_back(desc);
+    return out;
+}
+
+std::vector<ContextDesc> reservationsOf(ContextDesc desc) {
+    std::vector<ContextDesc> out;
+    for (const ListReservation way : {ListReservation::Approximate, ListReservation::Accurate, ListReservation::Fixed}) {
+        desc.listReservation = way;
+        desc.fixedListEntriesPerTile = way == ListReservation::Fixed ? 16 : 0;
+        out.push_back(desc);
+    }
+    return out;
+}
+
+// Filters and reservations crossed; the host's pyramid, which one pass alone looks at, once.
+std::vector<ContextDesc> variantsOf(const ContextDesc& desc) {
+    std::vector<ContextDesc> out;
+    for (const ContextDesc& filter : filtersOf(desc)) {
+        for (const ContextDesc& variant : reservationsOf(filter)) out.push_back(variant);
+    }
+    out.push_back(desc);
+    out.back().hostDepthPyramid = true;
+    return out;
+}
+
+std::vector<std::uint32_t> readSpirv(const char* name) {
+    const std::filesystem::path path = std::filesystem::path(GNOMON_BINARY_DIR) / "renderer/shaders" / name;
+    std::ifstream in(path, std::ios::binary);
+    std::vector<std::uint32_t> words(std::filesystem::file_size(path) / 4);
+    in.read(reinterpret_cast<char*>(words.data()), static_cast<std::streamsize>(words.size() * 4));
+    return words;
+}
+
+// The lighting pipelines as renderer/lighting makes them, without its images.
+void makeLighting(const Device& device, const Context& context, bool quantise) {
+    constexpr VkDescriptorType kSampled = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    const VkDescriptorType own[] = {kSampled, kSampled, kSampled, kSampled, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                                    VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER};
+    const SetLayout ownLayout = makeSetLayout(device, own, VK_SHADER_STAGE_COMPUTE_BIT);
+    const SetLayout empty = makeSetLayout(device, {}, VK_SHADER_STAGE_COMPUTE_BIT);
+    const VkDescriptorSetLayout main[] = {context.listsSetLayout(), context.receiversSetLayout(), empty, ownLayout};
+    const VkDescriptorSetLayout evaluate[] = {context.listsSetLayout(), context.receiversSetLayout(),
+                                              context.shadowmapsSetLayout(), ownLayout};
+    std::vector<std::uint32_t> constants(gpu::kSpecFirstFree + 1, 0u);
+    std::ranges::copy(context.specializationValues(), constants.begin());
+    constants[gpu::kSpecFirstFree] = quantise ? 1u : 0u;
+    const PipelineLayout mainLayout = makePipelineLayout(device, main);
+    const PipelineLayout evaluateLayout = makePipelineLayout(device, evaluate);
+    const std::uint32_t lanes = context.subgroupSize();
+    for (const char* name : {"lighting_deferred.spv", "lighting_evaluate.spv", "lighting_inline.spv"}) {
+        const bool deferred = std::string_view(name) == "lighting_deferred.spv";
+        const Pipeline made =
+            makeComputePipeline(device, readSpirv(name), deferred ? mainLayout : evaluateLayout, constants, lanes);
+        EXPECT_NE(made.get(), VK_NULL_HANDLE) << name;
+    }
+}
+
+TEST_F(PipelinesTest, EveryVariantOfTheLibrary) {
+    for (const DeviceInfo& info : devices_) {
+        const Device device(*instance(), info);
+        for (const std::uint32_t size : sizesOf(info)) {
+            ContextDesc desc = descOf(device, info.queueFamily);
+            desc.subgroupSize = size;
+            std::size_t made = 0;
+            for (const ContextDesc& variant : variantsOf(desc)) {
+                std::unique_ptr<Context> context;
+                const Result result = Context::create(variant, context);
+                ASSERT_TRUE(result) << info.name << ", " << size << " lanes: " << result.message();
+                EXPECT_EQ(context->subgroupSize(), size);
+                ++made;
+            }
+            std::printf("%s (%s), %u lanes: %zu contexts\n", info.name.c_str(), info.driver.c_str(), size, made);
+        }
+    }
+}
+
+TEST_F(PipelinesTest, LightingOfTheRenderer) {
+    for (const DeviceInfo& info : devices_) {
+        const Device device(*instance(), info);
+        for (const std::uint32_t size : sizesOf(info)) {
+            ContextDesc desc = descOf(device, info.queueFamily);
+            desc.subgroupSize = size;
+            for (const ContextDesc& variant : filtersOf(desc)) {
+                std::unique_ptr<Context> context;
+                const Result result = Context::create(variant, context);
+                ASSERT_TRUE(result) << info.name << ": " << result.message();
+                for (const bool quantise : {false, true}) makeLighting(device, *context, quantise);
+            }
+        }
+    }
+}
+
+// Without a wish, the device's own size is taken, and two contexts live side by side.
+TEST_F(PipelinesTest, TwoContextsOfTheDevicesOwnChoice) {
+    for (const DeviceInfo& info : devices_) {
+        const Device device(*instance(), info);
+        ContextDesc desc = descOf(device, info.queueFamily);
+        std::unique_ptr<Context> first, second;
+        ASSERT_TRUE(Context::create(desc, first));
+        desc.filter = Filter::Hard;
+        desc.pipelineCache = VK_NULL_HANDLE;
+        ASSERT_TRUE(Context::create(desc, second));
+        EXPECT_EQ(first->subgroupSize(), std::min(info.subgroupSize, gpu::kWorkGroupSize));
+        EXPECT_NE(first->listsSetLayout(), second->listsSetLayout());
+        first.reset();
+        EXPECT_EQ(second->subgroupSize(), std::min(info.subgroupSize, gpu::kWorkGroupSize));
+    }
+}
+
+TEST_F(PipelinesTest, WhatADeviceCannotDoIsRefused) {
+    for (const DeviceInfo& info : devices_) {
+        const Device device(*instance(), info);
+        const std::vector<std::uint32_t> sizes = sizesOf(info);
+        for (std::uint32_t size : {2u, 4u, 8u, 16u, 32u, 64u, 128u}) {
+            if (std::ranges::find(sizes, size) != sizes.end()) continue;
+            ContextDesc desc = descOf(device, info.queueFamily);
+            desc.subgroupSize = size;
+            std::unique_ptr<Context> context;
+            const Result result = Context::create(desc, context);
+            EXPECT_EQ(result.status(), Status::UnsupportedDevice) << info.name << ", " << size;
+            EXPECT_THAT(result.message(), HasSubstr(info.name));
+            EXPECT_THAT(result.message(), HasSubstr(std::to_string(size) + " lanes"));
+            EXPECT_EQ(context, nullptr);
+        }
+        ContextDesc desc = descOf(device, info.queueFamily);
+        desc.getInstanceProcAddr = nullptr;
+        std::unique_ptr<Context> context;
+        EXPECT_EQ(Context::create(desc, context).status(), Status::BadArgument);
+    }
+}
+
+// Debug labels that the instance does not offer are refused, not crashed on.
+TEST(PipelinesWithoutLabels, AreRefused) {
+    std::unique_ptr<VulkanInstance> plain;
+    try {
+        plain = makeInstance({.debugLabels = false});
+    } catch (const GpuError& error) {
+        GTEST_SKIP() << "skipped: " << error.what();
+    }
+    for (const DeviceInfo& info : plain->listDevices()) {
+        if (!info.suitable) continue;
+        const Device device(*plain, info);
+        ContextDesc desc = descOf(device, info.queueFamily);
+        std::unique_ptr<Context> context;
+        EXPECT_TRUE(Context::create(desc, context)) << info.name;
+        desc.debugLabels = true;
+        const Result result = Context::create(desc, context);
+        EXPECT_EQ(result.status(), Status::BadArgument) << info.name;
+        EXPECT_THAT(result.message(), HasSubstr("VK_EXT_debug_utils"));
+    }
+}
+
+// On RADV's null device alone: both widths of AMD hardware were there to be compiled for.
+TEST_F(PipelinesTest, RadvCompilesBothWidths) {
+    if (!onNullDevice()) GTEST_SKIP() << "skipped: only with RADV_FORCE_FAMILY";
+    const auto radv = std::ranges::find_if(
+        devices_, [](const DeviceInfo& info) { return info.name.find("RADV") != std::string::npos; });
+    ASSERT_NE(radv, devices_.end());
+    EXPECT_EQ(sizesOf(*radv), (std::vector<std::uint32_t>{32, 64}));
+}
+
+}  // namespace
+}  // namespace gnomon::renderer

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <string>
 
 #include "app/build_info.h"
@@ -43,7 +44,9 @@ int parseAndWork(int argc, char** argv) {
             throw UsageError(fmt::format("There is no command '{}'; gnomon --help lists them.", argv[1]));
         throw UsageError(error.what());
     }
-    return work();
+    const int code = work();
+    if (std::fflush(stdout) != 0) throw std::runtime_error("The output could not be written.");
+    return code;
 }
 
 int guarded(int argc, char** argv) {

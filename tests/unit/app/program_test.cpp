@@ -153,6 +153,15 @@ TEST_F(Program, RendersAndDescribesAFrame) {
     EXPECT_EQ(json["extent"], (nlohmann::json{160, 90}));
 }
 
+TEST_F(Program, FramesAreCleanUnderValidation) {
+    for (const char* shadows : {"deferred", "inline", "off"})
+        expectGood(std::string("render boxes --size 97x61 --frames 3 --validate --shadows ") + shadows);
+}
+
+TEST_F(Program, AFullDiskIsAFailure) {
+    EXPECT_EQ(run("scenes >/dev/full 2>/dev/null #").exitCode, 1);  // the comment hides the redirection that run() adds
+}
+
 TEST_F(Program, PoolsOfOneLoseNoLight) {
     expectGood("render boxes --size 160x90 -o all.png");
     expectGood("render boxes --size 160x90 -o one.png --stats one.json --list-entries 1 --visibility-slots 1");

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
+#include <utility>
 
 #include "gpu_interface/numbers.h"
+#include "gpu_interface/structs.h"
 #include "renderer/camera.h"
 #include "renderer/gbuffer/gbuffer.h"
 #include "renderer/gpu/error.h"
@@ -117,6 +119,8 @@ struct Renderer::State {
     Lighting lighting;
     GpuTimer timer;
     Commands commands[kFramesInFlight];
+    std::unique_ptr<Prepare> selection;  // where more lights are given than a view can have
+    std::vector<std::byte> selectionMemory;
     std::uint64_t frameNumber = 0;
     struct Known {
         std::uint64_t frameNumber = ~0ull;
@@ -139,6 +143,8 @@ struct Renderer::State {
         std::ranges::transform(sceneLights, std::back_inserter(shadowLights), shadowLightOf);
     }
 
+    std::vector<Light> lightsOf(const glm::dvec3& origin, std::span<const std::uint32_t> firstViews) const;
+    void selectCasters(const Camera& camera, const glm::dvec3& origin);
     void beginView(const Camera& camera, const glm::dvec3& origin, const ShadowPlan& plan);
     void recordPasses(VkCommandBuffer c, const GBufferCamera& camera, const ShadowPlan& plan, ShadowMode mode,
                       FrameReport& report);
@@ -151,14 +157,47 @@ Renderer::~Renderer() {
     if (state_ != nullptr) state_->device.waitIdle();
 }
 
-// Phase 1 and everything else the library wants to know of the frame.
-void Renderer::State::beginView(const Camera& camera, const glm::dvec3& origin, const ShadowPlan& plan) {
+std::vector<Light> Renderer::State::lightsOf(const glm::dvec3& origin, std::span<const std::uint32_t> firstViews) const {
     std::vector<Light> lights;
     lights.reserve(sceneLights.size());
     for (std::size_t i = 0; i < sceneLights.size(); ++i) {
-        const bool casts = sceneLights[i].casts && plan.firstView[i] != kNoShadowViews;
-        lights.push_back(lightOf(sceneLights[i], origin, casts ? plan.firstView[i] : kNoShadowViews));
+        const std::uint32_t first = firstViews.empty() || !sceneLights[i].casts ? kNoShadowViews : firstViews[i];
+        lights.push_back(lightOf(sceneLights[i], origin, first));
     }
+    return lights;
+}
+
+// Only lights that phase 1 will keep deserve shadowmaps. Asking phase 1 itself, with a history of its own that sees the
+// same frames, gives the very choice that the view will make.
+void Renderer::State::selectCasters(const Camera& camera, const glm::dvec3& origin) {
+    if (sceneLights.size() <= gpu::kMaxLightsPerView) return;
+    const PrepareSizes sizes = prepareSizes(desc.widthPx, desc.heightPx);
+    if (selection == nullptr) {
+        require(Prepare::create({.maxWidthPx = desc.widthPx, .maxHeightPx = desc.heightPx}, selection));
+        selectionMemory.resize(sizes.frameConstants + sizes.lights + sizes.zBins + sizes.tileLightMasks);
+    }
+    std::byte* memory = selectionMemory.data();
+    const auto take = [&memory](std::size_t bytes) { return std::exchange(memory, memory + bytes); };
+    const PrepareOutput output = {take(sizes.frameConstants), take(sizes.lights), take(sizes.zBins),
+                                  take(sizes.tileLightMasks)};
+    const std::vector<Light> lights = lightsOf(origin, {});
+    ViewInput input;
+    input.camera = camera;
+    input.widthPx = desc.widthPx;
+    input.heightPx = desc.heightPx;
+    input.lights = lights;
+    PrepareReport report;
+    require(selection->run(input, output, report));
+    for (ShadowLight& light : shadowLights) light.casts = false;
+    const auto* kept = static_cast<const gpu::GpuLight*>(output.lights);
+    for (std::uint32_t i = 0; i < report.visible; ++i) {
+        shadowLights[kept[i].hostIndex].casts = sceneLights[kept[i].hostIndex].casts;
+    }
+}
+
+// Phase 1 and everything else the library wants to know of the frame.
+void Renderer::State::beginView(const Camera& camera, const glm::dvec3& origin, const ShadowPlan& plan) {
+    const std::vector<Light> lights = lightsOf(origin, plan.firstView);
     std::vector<ShadowView> views;
     views.reserve(plan.views.size());
     for (const PlannedView& planned : plan.views) views.push_back(planned.view);
@@ -213,6 +252,7 @@ std::uint64_t Renderer::renderFrame(const SceneCamera& sceneCamera, ShadowMode m
     const Camera camera = cameraOf(sceneCamera, origin, s.desc.widthPx, s.desc.heightPx, s.desc.deviceDepth);
     const GBufferCamera gbufferCamera = gbufferCameraOf(camera);
     s.scene.recordTransforms(c, origin);
+    s.selectCasters(camera, origin);
     const ShadowPlan plan =
         s.planner.plan(s.shadowLights, planCameraOf(sceneCamera, gbufferCamera, origin, s.desc.heightPx), origin);
     s.beginView(camera, origin, plan);

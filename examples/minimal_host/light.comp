@@ -16,7 +16,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(buffer_reference, std430) writeonly buffer Picture { uint rgba8[]; };
 layout(push_constant) uniform Push { Picture picture; };
 // What else the host knows of its lights, in the order in which it gives them to the library: candela.
-const vec3 kCandela[] = vec3[](vec3(28, 20, 12), vec3(8, 14, 26), vec3(2.4, 2, 1.6), vec3(0.1, 0.4, 0.15));
+const vec3 kCandela[] = vec3[](vec3(19, 14, 8), vec3(5, 9, 17), vec3(1.5, 1.3, 1.1), vec3(0.1, 0.4, 0.15));
 
 // Light that a white surface sends to the eye, unshadowed; the host's own falloff.
 vec3 lightFrom(GpuLight light, Receiver receiver, vec3 toLight) {

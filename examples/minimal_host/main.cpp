@@ -8,8 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <memory>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -45,10 +43,9 @@ Mat4 multiply(const Mat4& a, const Mat4& b) {
     return m;
 }
 Mat4 lookAlong(Vec3 eye, Vec3 d) {  // viewFromWorld of a view that looks down its -z axis, which is d; y is up
-    const float length = std::hypot(d[0], d[1], d[2]), flat = std::hypot(d[0], d[2]);
+    const float l = std::hypot(d[0], d[1], d[2]), flat = std::hypot(d[0], d[2]);
     const Vec3 x = flat > 0 ? Vec3{-d[2] / flat, 0, d[0] / flat} : Vec3{1, 0, 0};
-    const Vec3 z = {-d[0] / length, -d[1] / length, -d[2] / length};
-    const Vec3 y = {z[1] * x[2], z[2] * x[0] - z[0] * x[2], -z[1] * x[0]};
+    const Vec3 z = {-d[0] / l, -d[1] / l, -d[2] / l}, y = {z[1] * x[2], z[2] * x[0] - z[0] * x[2], -z[1] * x[0]};
     return multiply({x[0], y[0], z[0], 0, x[1], y[1], z[1], 0, x[2], y[2], z[2], 0, 0, 0, 0, 1},
                     {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -eye[0], -eye[1], -eye[2], 1});
 }
@@ -66,9 +63,9 @@ struct Host {  // what is needed everywhere
     uint8_t* mapped = nullptr;    // the data
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkPipeline trace = VK_NULL_HANDLE, lightTiles = VK_NULL_HANDLE, lightEvaluateTiles = VK_NULL_HANDLE;
-
     template <class T, class Info>
-    T make(VkResult(VKAPI_PTR* create)(VkDevice, const Info*, const VkAllocationCallbacks*, T*), const Info& info) const {
+    T make(VkResult(VKAPI_PTR* create)(VkDevice, const Info*, const VkAllocationCallbacks*, T*),
+           const Info& info) const {
         T object = VK_NULL_HANDLE;
         check(create(device, &info, nullptr, &object));
         return object;
@@ -77,9 +74,8 @@ struct Host {  // what is needed everywhere
 
 // 1. Vulkan 1.3. The library needs the first three features; the shaders here need buffer addresses.
 void createDevice(Host& host, uint32_t index) {
-    VkApplicationInfo application = {VK_STRUCTURE_TYPE_APPLICATION_INFO};
-    application.apiVersion = VK_API_VERSION_1_3;
-    const VkInstanceCreateInfo instance = {VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, nullptr, 0, &application};
+    const VkApplicationInfo app = {VK_STRUCTURE_TYPE_APPLICATION_INFO, nullptr, "", 0, "", 0, VK_API_VERSION_1_3};
+    const VkInstanceCreateInfo instance = {VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, nullptr, 0, &app};
     check(vkCreateInstance(&instance, nullptr, &host.instance));
     VkPhysicalDevice devices[16];
     uint32_t deviceCount = 16, familyCount = 16;
@@ -99,10 +95,9 @@ void createDevice(Host& host, uint32_t index) {
     features12.bufferDeviceAddress = VK_TRUE;
     VkPhysicalDeviceVulkan13Features features = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, &features12};
     features.synchronization2 = features.computeFullSubgroups = features.subgroupSizeControl = VK_TRUE;
-    const float priority = 1.0f;
-    VkDeviceQueueCreateInfo queue = {VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, host.queueFamily, 1};
-    queue.pQueuePriorities = &priority;
-    const VkDeviceCreateInfo info = {VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features, 0, 1, &queue};
+    const float one = 1.0f;
+    const VkDeviceQueueCreateInfo q = {VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, {}, 0, host.queueFamily, 1, &one};
+    const VkDeviceCreateInfo info = {VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features, 0, 1, &q};
     check(vkCreateDevice(host.physicalDevice, &info, nullptr, &host.device));
 }
 
@@ -122,8 +117,8 @@ void createData(Host& host) {
     host.data = host.make(vkCreateBuffer, info);
     VkMemoryRequirements needs;
     vkGetBufferMemoryRequirements(host.device, host.data, &needs);
-    const VkMemoryPropertyFlags kind = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    const VkDeviceMemory memory = allocate(host, needs, kind);
+    constexpr auto kMapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    const VkDeviceMemory memory = allocate(host, needs, kMapped);
     check(vkBindBufferMemory(host.device, host.data, memory, 0));
     check(vkMapMemory(host.device, memory, 0, kDataBytes, 0, reinterpret_cast<void**>(&host.mapped)));
     const VkBufferDeviceAddressInfo address = {VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO, nullptr, host.data};
@@ -146,8 +141,7 @@ VkImage createDepth(const Host& host, uint32_t widthPx, uint32_t heightPx, VkIma
     return image;
 }
 
-// 5. Lighting pipelines have the library's sets and its specialization values, so that what they evaluate is what it
-// would have stored.
+// 5. Pipelines that light have the library's specialization values: they evaluate what it would have stored.
 VkPipeline createPipeline(const Host& host, std::span<const uint32_t> spirv, std::span<const uint32_t> values) {
     VkShaderModuleCreateInfo module = {VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, nullptr, 0, spirv.size_bytes()};
     module.pCode = spirv.data();
@@ -155,13 +149,10 @@ VkPipeline createPipeline(const Host& host, std::span<const uint32_t> spirv, std
     for (uint32_t i = 0; i < values.size(); ++i) entries.push_back({i, i * 4, 4});
     const VkSpecializationInfo constants = {uint32_t(values.size()), entries.data(), values.size_bytes(), &values[0]};
     VkComputePipelineCreateInfo info = {VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-    info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  nullptr,
-                  0,
-                  VK_SHADER_STAGE_COMPUTE_BIT,
-                  host.make(vkCreateShaderModule, module),
-                  "main",
-                  &constants};
+    info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO, nullptr, 0, VK_SHADER_STAGE_COMPUTE_BIT};
+    info.stage.module = host.make(vkCreateShaderModule, module);
+    info.stage.pName = "main";
+    info.stage.pSpecializationInfo = &constants;
     info.layout = host.layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
     check(vkCreateComputePipelines(host.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
@@ -170,18 +161,16 @@ VkPipeline createPipeline(const Host& host, std::span<const uint32_t> spirv, std
 struct Push {  // of trace.comp
     Mat4 clipFromWorld;
     VkDeviceAddress depths;
-    uint32_t firstPx[2], sizePx[2], rowPx, unused;
+    uint32_t firstPx[2], sizePx[2], rowPx;
 };
-void createPipelines(Host& host, const gnomon::Context& context) {
-    const VkDescriptorSetLayout sets[] = {context.listsSetLayout(), context.receiversSetLayout(),
-                                          context.shadowmapsSetLayout()};
+void createPipelines(Host& host, const gnomon::Context& c) {
+    const VkDescriptorSetLayout sets[] = {c.listsSetLayout(), c.receiversSetLayout(), c.shadowmapsSetLayout()};
     const VkPushConstantRange push = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(Push)};
-    VkPipelineLayoutCreateInfo info = {VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, nullptr, 0, 3, sets, 1};
-    info.pPushConstantRanges = &push;
+    const VkPipelineLayoutCreateInfo info = {VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, {}, 0, 3, sets, 1, &push};
     host.layout = host.make(vkCreatePipelineLayout, info);
-    host.trace = createPipeline(host, kTrace, context.specializationValues());
-    host.lightTiles = createPipeline(host, kLightTiles, context.specializationValues());
-    host.lightEvaluateTiles = createPipeline(host, kLightEvaluateTiles, context.specializationValues());
+    host.trace = createPipeline(host, kTrace, c.specializationValues());
+    host.lightTiles = createPipeline(host, kLightTiles, c.specializationValues());
+    host.lightEvaluateTiles = createPipeline(host, kLightEvaluateTiles, c.specializationValues());
 }
 
 // 6. All of the scene's lights, and the views of those that cast shadows.
@@ -195,6 +184,7 @@ void createLights(std::vector<gnomon::Light>& lights, std::vector<gnomon::Shadow
     for (uint32_t i = 0; i < 8; ++i) {  // two spots above, and below the six views of a point light
         gnomon::Light& light = lights[std::min(i, 2u)];
         light.firstShadowView = std::min(i, 2u);
+        light.biasMetres = 0.03f;  // about a texel: these shadowmaps are coarse
         const uint32_t sizePx = i < 2 ? 512 : 256, xPx = i % 4 * sizePx, yPx = i < 2 ? 0 : 512 + i / 4 % 2 * 256;
         // Four texels more on each side, for filters at the border.
         const float tangent = (i < 2 ? std::tan(light.outerConeAngle) : 1) * float(sizePx) / float(sizePx - 8);
@@ -209,11 +199,10 @@ void barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImag
     constexpr auto kAll = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT;
     constexpr auto kAny = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
     const VkMemoryBarrier2 memory = {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, kAll, kAny, kAll, kAny};
-    VkImageMemoryBarrier2 layout = {
-        VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2, nullptr, kAll, kAny, kAll, kAny, from, to};
-    layout.image = image;
-    layout.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
-    const VkDependencyInfo info = {VK_STRUCTURE_TYPE_DEPENDENCY_INFO, nullptr, 0, 1, &memory, 0, nullptr, 1, &layout};
+    VkImageMemoryBarrier2 own = {VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2, nullptr, kAll, kAny, kAll, kAny, from, to};
+    own.image = image;
+    own.subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
+    const VkDependencyInfo info = {VK_STRUCTURE_TYPE_DEPENDENCY_INFO, nullptr, 0, 1, &memory, 0, nullptr, 1, &own};
     vkCmdPipelineBarrier2(commands, &info);
 }
 // Stands for the host's drawing of depth. Leaves the image as the library wants it.
@@ -230,15 +219,6 @@ void draw(const Host& host, VkCommandBuffer commands, std::span<const gnomon::Sh
     const VkBufferImageCopy all = {depths, 0, 0, {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0, 1}, {}, {widthPx, heightPx, 1}};
     vkCmdCopyBufferToImage(commands, host.data, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &all);
     barrier(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-}
-void light(const Host& host, VkCommandBuffer commands, const gnomon::View& view) {
-    const VkDescriptorSet sets[] = {view.listsSet(), view.receiversSet(), view.shadowmapsSet()};
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, host.layout, 0, 3, sets, 0, nullptr);
-    vkCmdPushConstants(commands, host.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(host.address), &host.address);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, host.lightTiles);
-    vkCmdDispatch(commands, view.tileCounts().width, view.tileCounts().height, 1);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, host.lightEvaluateTiles);
-    vkCmdDispatchIndirect(commands, view.evaluateTilesBuffer(), view.evaluateCommandOffset());
 }
 
 void run(uint32_t deviceIndex, uint32_t poolEntries, const char* path) {
@@ -259,29 +239,24 @@ void run(uint32_t deviceIndex, uint32_t poolEntries, const char* path) {
     std::vector<gnomon::Light> lights;
     std::vector<gnomon::ShadowView> shadowViews;
     createLights(lights, shadowViews);
-    const Mat4 viewFromWorld = lookAlong({0, 3.2f, 7.5f}, {0, -2.4f, -7.5f});
-    const Mat4 clipFromView = perspective(0.5f * kWidthPx / kHeightPx, 0.5f);
+    frame.view = {.widthPx = kWidthPx, .heightPx = kHeightPx, .lights = lights};
+    const Mat4 viewFromWorld = lookAlong({0, 3.2f, 7.5f}, {0, -2.8f, -7.5f});
+    const Mat4 clipFromView = perspective(0.4f * kWidthPx / kHeightPx, 0.4f);
     std::ranges::copy(viewFromWorld, frame.view.camera.viewFromWorld);
     std::ranges::copy(clipFromView, frame.view.camera.clipFromView);
     gnomon::ShadowView camera = {.widthPx = kWidthPx, .heightPx = kHeightPx};  // for draw()
     std::ranges::copy(multiply(clipFromView, viewFromWorld), camera.clipFromWorld);
-    frame.view.widthPx = kWidthPx;
-    frame.view.heightPx = kHeightPx;
-    frame.view.lights = lights;
     frame.shadowViews = shadowViews;
     frame.atlases = {&atlas, 1};
-
     VkQueue queue = VK_NULL_HANDLE;
     vkGetDeviceQueue(host.device, host.queueFamily, 0, &queue);
     const VkCommandPoolCreateInfo pool = {VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr, 0, host.queueFamily};
-    VkCommandBufferAllocateInfo allocate = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
+    VkCommandBufferAllocateInfo allocate = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr, {}, {}, 1};
     allocate.commandPool = host.make(vkCreateCommandPool, pool);
-    allocate.commandBufferCount = kFrames;
-    VkCommandBuffer buffers[kFrames];
-    check(vkAllocateCommandBuffers(host.device, &allocate, buffers));
-    for (VkCommandBuffer commands : buffers) {
-        check(vkQueueWaitIdle(queue));  // 7. Frame frameNumber - framesInFlight has finished: here every one has.
-        check(view->beginFrame(frame));
+    for (; frame.frameNumber < kFrames; ++frame.frameNumber) {
+        check(view->beginFrame(frame));  // 7. Frame frameNumber - framesInFlight has finished: here, all have.
+        VkCommandBuffer commands = VK_NULL_HANDLE;  // a new one every frame, for brevity
+        check(vkAllocateCommandBuffers(host.device, &allocate, &commands));
         const VkCommandBufferBeginInfo begin = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
         check(vkBeginCommandBuffer(commands, &begin));
         draw(host, commands, {&camera, 1}, depth, kWidthPx, kHeightPx, kDepths);  // 8. The G-buffer.
@@ -290,33 +265,35 @@ void run(uint32_t deviceIndex, uint32_t poolEntries, const char* path) {
         view->recordFindLightsAccurate(commands);
         draw(host, commands, shadowViews, atlasImage, kAtlasPx, kAtlasPx, kAtlasDepths);  // 10. The shadowmaps.
         view->recordGenerateShadows(commands);                                            // 11.
-        light(host, commands, *view);                                                     // 12.
-        view->recordEndFrame(commands);                                                   // 13.
+        const VkDescriptorSet sets[] = {view->listsSet(), view->receiversSet(), view->shadowmapsSet()};  // 12.
+        vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, host.layout, 0, 3, sets, 0, nullptr);
+        vkCmdPushConstants(commands, host.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 8, &host.address);
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, host.lightTiles);
+        vkCmdDispatch(commands, view->tileCounts().width, view->tileCounts().height, 1);
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, host.lightEvaluateTiles);
+        vkCmdDispatchIndirect(commands, view->evaluateTilesBuffer(), view->evaluateCommandOffset());
+        view->recordEndFrame(commands);  // 13.
         barrier(commands, depth, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
         check(vkEndCommandBuffer(commands));
         const VkSubmitInfo submit = {VK_STRUCTURE_TYPE_SUBMIT_INFO, nullptr, 0, nullptr, nullptr, 1, &commands};
         check(vkQueueSubmit(queue, 1, &submit, VK_NULL_HANDLE));
-        ++frame.frameNumber;
+        check(vkQueueWaitIdle(queue));
     }
-    check(vkQueueWaitIdle(queue));
-    gnomon::FrameStatistics statistics;  // 14.
-    view->statistics(frame.frameNumber - 1, statistics);
-    std::printf(
-        "lights: %u given, %u visible, %u casting\nlist entries: %u, visibility slots: %u, evaluated tiles: %u\n",
-        statistics.lights.given, statistics.lights.visible, statistics.lights.casting, statistics.listEntries,
-        statistics.visibilitySlots, statistics.evaluateTiles);
+    gnomon::FrameStatistics s;  // 14.
+    if (!view->statistics(kFrames - 1, s)) throw std::runtime_error("The last frame has no statistics.");
+    std::printf("lights: %u given, %u visible, %u casting\n", s.lights.given, s.lights.visible, s.lights.casting);
+    std::printf("lists: %u, slots: %u, evaluated: %u tiles\n", s.listEntries, s.visibilitySlots, s.evaluateTiles);
     std::FILE* file = std::fopen(path, "wb");
     if (file == nullptr) throw std::runtime_error("The picture could not be opened for writing.");
     std::fprintf(file, "P6\n%u %u\n255\n", kWidthPx, kHeightPx);
     for (uint32_t i = 0; i < kWidthPx * kHeightPx; ++i) std::fwrite(host.mapped + 4 * i, 1, 3, file);
-    if (std::fclose(file) != 0) throw std::runtime_error("The picture could not be written.");
+    std::fclose(file);
 }  // 15. The view goes before the context, both before the device: which, like the rest, goes with this process.
 }  // namespace
 
 int main(int argc, char** argv) try {
     const auto number = [&](int i) { return argc > i ? uint32_t(std::stoul(argv[i])) : 0u; };
     run(number(2), number(3), argc > 1 ? argv[1] : "minimal_host.ppm");
-    return 0;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "minimal_host: %s\n", error.what());
     return 1;

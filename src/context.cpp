@@ -48,6 +48,9 @@ Result checkDesc(const ContextDesc& desc) {
     return {};
 }
 
+// Of the set of the lists all but the frame's uniform buffer, and the shadow views.
+constexpr std::uint32_t kStorageBuffersNeeded = kListsBindingCount - 1 + 1;
+
 // The subgroup size that pipelines will ask for, checked against what the device can do.
 // `require` says whether they may ask for it: a device that cannot be asked always runs its own size.
 Result chooseSubgroupSize(const ContextDesc& desc, const Functions& vk, std::uint32_t& out, bool& require) {
@@ -60,13 +63,17 @@ Result chooseSubgroupSize(const ContextDesc& desc, const Functions& vk, std::uin
                                properties.properties.deviceName, VK_API_VERSION_MAJOR(properties.properties.apiVersion),
                                VK_API_VERSION_MINOR(properties.properties.apiVersion));
     }
-    constexpr VkSubgroupFeatureFlags kNeeded =
-        VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_VOTE_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT;
+    constexpr VkSubgroupFeatureFlags kNeeded = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_ARITHMETIC_BIT;
     if ((v11.subgroupSupportedOperations & kNeeded) != kNeeded ||
         (v11.subgroupSupportedStages & VK_SHADER_STAGE_COMPUTE_BIT) == 0) {
         return Result::failure(Status::UnsupportedDevice,
-                               "'%s' lacks basic, vote or arithmetic subgroup operations in compute shaders.",
+                               "'%s' lacks basic or arithmetic subgroup operations in compute shaders.",
                                properties.properties.deviceName);
+    }
+    const std::uint32_t storageBuffers = properties.properties.limits.maxPerStageDescriptorStorageBuffers;
+    if (storageBuffers < kStorageBuffersNeeded) {
+        return Result::failure(Status::UnsupportedDevice, "'%s' allows %u storage buffers per shader stage; %u are needed.",
+                               properties.properties.deviceName, storageBuffers, kStorageBuffersNeeded);
     }
     out = desc.subgroupSize != 0 ? desc.subgroupSize : std::min(v11.subgroupSize, kWorkGroupSize);
     require = (v13.requiredSubgroupSizeStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0;
@@ -159,8 +166,11 @@ void readDevice(Context::State& state, const ContextDesc& desc) {
     device.device = desc.device;
     device.physicalDevice = desc.physicalDevice;
     device.debugLabels = desc.debugLabels;
-    device.queueFamilyCount = static_cast<std::uint32_t>(desc.queueFamilies.size());
-    std::copy(desc.queueFamilies.begin(), desc.queueFamilies.end(), device.queueFamilies);
+    for (std::uint32_t family : desc.queueFamilies) {  // sharing wants each family once
+        std::uint32_t* const end = device.queueFamilies + device.queueFamilyCount;
+        if (std::find(device.queueFamilies, end, family) != end) continue;
+        device.queueFamilies[device.queueFamilyCount++] = family;
+    }
     device.vk.GetPhysicalDeviceMemoryProperties(desc.physicalDevice, &device.memory);
     VkPhysicalDeviceProperties2 properties = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
     device.vk.GetPhysicalDeviceProperties2(desc.physicalDevice, &properties);
@@ -178,7 +188,7 @@ void readDevice(Context::State& state, const ContextDesc& desc) {
 
 Context::State::~State() {
     const Functions& vk = device.vk;
-    if (vk.DestroyPipeline == nullptr) return;
+    if (device.device == VK_NULL_HANDLE) return;  // refused before anything was made
     for (VkPipeline pipeline : pipelines) vk.DestroyPipeline(device.device, pipeline, nullptr);
     vk.DestroyPipelineLayout(device.device, pipelineLayout, nullptr);
     vk.DestroyDescriptorSetLayout(device.device, listsLayout, nullptr);

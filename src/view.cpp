@@ -357,6 +357,7 @@ Result View::beginFrame(const FrameDesc& frame, PrepareReport* report) noexcept 
     completeFrameConstants(state, frame, constants);
     std::memcpy(slot.streamed[kBindFrame].mapped, &constants, sizeof(constants));
     bindImages(state, slot, frame);
+    slot.tiles = constants.tileCounts.x * constants.tileCounts.y;
     state.frame = constants;
     state.current = index;
     slot.frameNumber = frame.frameNumber;

@@ -41,6 +41,7 @@ struct FrameSlot {
     PrepareReport lights;
     double prepareMilliseconds = 0.0;
     std::uint32_t passBits = 0;  // passes recorded, by PassId
+    std::uint32_t tiles = 0;
 };
 
 struct View::State {

@@ -217,6 +217,10 @@ bool View::statistics(std::uint64_t frameNumber, FrameStatistics& out) const noe
     out.accurateExceedsApproximate = c.accurateExceedsApproximate;
     out.evaluateTiles = head.tileCount;
     out.recommendedListEntries = recommend(c.listEntries);
+    if (state.context->desc.listReservation == ListReservation::Fixed) {
+        out.listEntries = slot.tiles * roundUpToEarlyWord(state.context->desc.fixedListEntriesPerTile);
+        out.recommendedListEntries = out.listEntries;
+    }
     out.recommendedVisibilitySlots = recommend(c.visibilitySlots);
     out.tilesWithGeometry = c.tilesWithGeometry;
     out.approximateEntries = c.approximateEntries;

@@ -42,9 +42,8 @@ enum class ListReservation : std::uint8_t {
 };
 
 /// The device, and the variant of the pipelines. Needs Vulkan 1.3 with synchronization2, and computeFullSubgroups and
-/// subgroupSizeControl enabled (subgroup operations: basic, vote, arithmetic, ballot);
-/// for debugLabels
-/// VK_EXT_debug_utils on the instance.
+/// subgroupSizeControl enabled; subgroup operations (basic, arithmetic) in compute shaders; 15 storage buffers per stage;
+/// for debugLabels VK_EXT_debug_utils on the instance.
 struct ContextDesc {
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;

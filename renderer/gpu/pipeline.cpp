@@ -173,10 +173,8 @@ Pipeline makeComputePipeline(const Device& device, std::span<const std::uint32_t
     info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
     info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module.handle);
     info.stage.pSpecializationInfo = entries.empty() ? nullptr : &values;
-    if (requiredSubgroupSize != 0) {
-        info.stage.pNext = &size;
-        info.stage.flags = VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT;
-    }
+    info.stage.flags = VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT;
+    if (requiredSubgroupSize != 0) info.stage.pNext = &size;
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
     check(vkCreateComputePipelines(device.handle(), device.pipelineCache(), 1, &info, nullptr, &pipeline),

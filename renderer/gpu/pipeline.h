@@ -81,7 +81,7 @@ struct GraphicsPipelineDesc {
 /// Triangle lists without vertex attributes (the vertex shader pulls), dynamic viewport and scissor, no blending.
 Pipeline makeGraphicsPipeline(const Device& device, const GraphicsPipelineDesc& desc);
 
-/// `specialization`: values of constants 0, 1, 2 ... A required subgroup size of 0 leaves the choice to the device.
+/// `specialization`: values of constants 0, 1, 2 ... Subgroups are full; a required size of 0 leaves it to the device.
 Pipeline makeComputePipeline(const Device& device, std::span<const std::uint32_t> spirv, VkPipelineLayout layout,
                              std::span<const std::uint32_t> specialization = {},
                              std::uint32_t requiredSubgroupSize = 0);

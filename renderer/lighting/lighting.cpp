@@ -76,7 +76,9 @@ Lighting::Lighting(const Device& device, const Context& context, const Scene& sc
     std::vector<std::uint32_t> constantsOf(gpu::kSpecFirstFree + 1, 0u);
     std::ranges::copy(context.specializationValues(), constantsOf.begin());
     constantsOf[gpu::kSpecFirstFree] = quantiseInline ? 1u : 0u;
-    const std::uint32_t lanes = context.subgroupSize();
+    // A device with one size need not, and perhaps cannot, be asked for it.
+    const bool oneSize = device.info().minSubgroupSize == device.info().maxSubgroupSize;
+    const std::uint32_t lanes = oneSize ? 0 : context.subgroupSize();
     deferred_ = makeComputePipeline(device, kDeferredSpirv, mainLayout_, constantsOf, lanes);
     evaluate_ = makeComputePipeline(device, kEvaluateSpirv, evaluateLayout_, constantsOf, lanes);
     inline_ = makeComputePipeline(device, kInlineSpirv, evaluateLayout_, constantsOf, lanes);

@@ -4,7 +4,6 @@
 #define GNOMON_VULKAN_WORK_GROUP_GLSL
 
 #extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_vote : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
 #include "gpu_interface/numbers.h"

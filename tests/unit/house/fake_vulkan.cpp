@@ -34,6 +34,7 @@ VKAPI_ATTR VkResult VKAPI_CALL create(VkDevice, const Info*, const VkAllocationC
 
 VKAPI_ATTR void VKAPI_CALL getProperties2(VkPhysicalDevice, VkPhysicalDeviceProperties2* out) {
     out->properties = current->properties;
+    out->properties.limits.maxPerStageDescriptorStorageBuffers = current->storageBuffersPerStage;
     for (auto* next = static_cast<VkBaseOutStructure*>(out->pNext); next != nullptr; next = next->pNext) {
         if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES) {
             auto* v11 = reinterpret_cast<VkPhysicalDeviceVulkan11Properties*>(next);
@@ -170,7 +171,7 @@ FakeVulkan::FakeVulkan() {
     limits.maxStorageBufferRange = 1u << 30;
     limits.maxUniformBufferRange = 65536;
     limits.maxBoundDescriptorSets = 4;
-    limits.maxPerStageDescriptorStorageBuffers = limits.maxDescriptorSetStorageBuffers = 64;
+    limits.maxDescriptorSetStorageBuffers = storageBuffersPerStage;
     limits.maxPerStageDescriptorUniformBuffers = limits.maxDescriptorSetUniformBuffers = 12;
     limits.maxPerStageDescriptorSampledImages = limits.maxDescriptorSetSampledImages = 64;
     limits.maxPerStageDescriptorSamplers = limits.maxDescriptorSetSamplers = 16;

@@ -26,6 +26,7 @@ public:
     // What the device says. Starts as a device that the library accepts.
     VkPhysicalDeviceProperties properties{};
     VkSubgroupFeatureFlags subgroupOperations = 0;
+    std::uint32_t storageBuffersPerStage = 64;
     VkShaderStageFlags subgroupStages = VK_SHADER_STAGE_ALL;
     VkShaderStageFlags requiredSubgroupSizeStages = VK_SHADER_STAGE_COMPUTE_BIT;
     std::uint32_t subgroupSize = 32, minSubgroupSize = 32, maxSubgroupSize = 64;

@@ -70,7 +70,7 @@ TEST(Refusal, BadDescriptions) {
 }
 
 TEST(Refusal, MissingFunctions) {
-    for (const char* name : {"vkGetPhysicalDeviceProperties2", "vkGetDeviceProcAddr"}) {
+    for (const char* name : {"vkGetPhysicalDeviceProperties2", "vkGetDeviceProcAddr", "vkDestroySampler"}) {
         FakeVulkan vulkan;
         vulkan.hidden = {name};
         expectRefused(vulkan, vulkan.desc(), Status::UnsupportedDevice, name);
@@ -99,8 +99,7 @@ TEST(Refusal, OldVulkan) {
 }
 
 TEST(Refusal, MissingSubgroupOperations) {
-    for (VkSubgroupFeatureFlagBits bit :
-         {VK_SUBGROUP_FEATURE_BASIC_BIT, VK_SUBGROUP_FEATURE_VOTE_BIT, VK_SUBGROUP_FEATURE_ARITHMETIC_BIT}) {
+    for (VkSubgroupFeatureFlagBits bit : {VK_SUBGROUP_FEATURE_BASIC_BIT, VK_SUBGROUP_FEATURE_ARITHMETIC_BIT}) {
         FakeVulkan vulkan;
         vulkan.subgroupOperations &= ~static_cast<VkSubgroupFeatureFlags>(bit);
         expectRefused(vulkan, vulkan.desc(), Status::UnsupportedDevice, "subgroup operations");
@@ -108,6 +107,12 @@ TEST(Refusal, MissingSubgroupOperations) {
     FakeVulkan vulkan;
     vulkan.subgroupStages = VK_SHADER_STAGE_FRAGMENT_BIT;
     expectRefused(vulkan, vulkan.desc(), Status::UnsupportedDevice, "compute");
+}
+
+TEST(Refusal, TooFewStorageBuffers) {
+    FakeVulkan vulkan;
+    vulkan.storageBuffersPerStage = 14;
+    expectRefused(vulkan, vulkan.desc(), Status::UnsupportedDevice, "storage buffers");
 }
 
 TEST(Refusal, SubgroupSizes) {

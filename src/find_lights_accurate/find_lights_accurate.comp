@@ -152,7 +152,7 @@ void main() {
         uint slotId = reserve(tileIndex, count);
         tileSlotId = slotId;
         tileLightSlotIds[tileIndex] = slotId;
-        earlyCounts[tileIndex] = slotId == kNoListSpace ? 0u : count | (counts.y << kEarlyCastingShift);
+        earlyCounts[tileIndex] = count | (counts.y << kEarlyCastingShift);
     }
     barrier();
     if (tileSlotId == kNoListSpace) return;

@@ -6,7 +6,7 @@
 // and no lights. One work group per tile, one lane per pixel.
 //
 // With a host's own pyramid (kHostDepthPyramid) one lane converts one tile. Such a pyramid may include background; the
-// range is then merely longer.
+// range is then merely longer: endless, since dividing by a standard infinite projection's zero could give either sign.
 #extension GL_GOOGLE_include_directive : require
 #define GNOMON_LISTS_ACCESS
 #include "vulkan/work_group.glsl"
@@ -24,8 +24,8 @@ void convertHostPyramid(uvec2 tile) {
     vec2 device = texelFetch(hostDepthPyramid, ivec2(tile), 0).xy;
     vec2 range = vec2(kInfinity, -kInfinity);
     if (!isBackground(device.x) || !isBackground(device.y)) {
-        float a = viewDepthOf(device.x);
-        float b = viewDepthOf(device.y);
+        float a = isBackground(device.x) ? kInfinity : viewDepthOf(device.x);
+        float b = isBackground(device.y) ? kInfinity : viewDepthOf(device.y);
         range = vec2(min(a, b), max(a, b));
     }
     tileDepthRanges[tileIndexOf(tile)] = range;

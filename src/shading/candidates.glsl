@@ -13,8 +13,11 @@ struct Candidates {
     uint last;
 };
 
+// An endless depth counts as the farthest reach of a light, so that no infinity meets a zero (bins of a frame without
+// lights are 0 per metre).
 uint zBinOf(float viewDepth) {
-    return uint(clamp(floor((viewDepth - frame.zBins.x) * frame.zBins.y), 0.0, float(kZBinCount - 1u)));
+    float depth = min(viewDepth, frame.zBins.z);
+    return uint(clamp(floor((depth - frame.zBins.x) * frame.zBins.y), 0.0, float(kZBinCount - 1u)));
 }
 
 // Light indices that may matter between two depths; first above last where there is none.

@@ -1,0 +1,40 @@
+// What the 8 bits of a stored visibility cost, against inline shadows that keep the float.
+//
+// Bound: q = round(255 sqrt(v)) errs by at most sqrt(v) / 255 in v. Encoded as sRGB (about a power of 1 / 2.4), one
+// light's L = v E errs by at most 255 / 2.4 * 1 / (255 sqrt(v)) * v^(1 / 2.4) = 0.42 v^-0.08 steps of a byte: below 0.8
+// down to v = 1 / 2000. Rounding both pictures adds one step, so 2/255 bounds the largest difference.
+#include "image/renderer/harness.h"
+
+namespace gnomon::renderer::image_test {
+namespace {
+
+GNOMON_IMAGE_TEST_SUITE(Quantisation);
+
+constexpr std::uint32_t kLargest = 2;     // of 255
+constexpr double kMeanAbsolute = 0.05;    // of 255
+
+TEST_P(Quantisation, CostsAtMostTwoSteps) {
+    for (const char* scene : {"courtyard", "columns", "masked"}) {
+        const View3d view = builtin(scene, 64);
+        SCOPED_TRACE(view.name);
+        RendererDesc desc = smallDesc();
+        desc.pcfRadius = 3;
+        desc.quantiseInline = false;
+        Renderer renderer(device(), view.scene, desc);
+        const Frame exact = draw(renderer, view.camera, ShadowMode::Inline);
+        const Frame deferred = draw(renderer, view.camera, ShadowMode::Deferred);
+        const float exposure = automaticExposure(exact.linear);
+        const Picture expected = toneMap(exact.linear, exposure), actual = toneMap(deferred.linear, exposure);
+        const Difference error = expectEqual(device(), view.name + " quantised", expected, actual, kLargest);
+        EXPECT_LE(error.meanAbsolute, kMeanAbsolute);
+        EXPECT_FALSE(exact.linear.rgba == deferred.linear.rgba) << "the switch does nothing";
+        std::printf("[ figure   ] %s: quantisation, %s: largest %u/255, mean %.4f/255, %.2f %% of pixels\n",
+                    device().info().name.c_str(), view.name.c_str(), error.largest, error.meanAbsolute,
+                    100.0 * static_cast<double>(error.pixels) / (desc.widthPx * desc.heightPx));
+        RecordProperty(std::string(scene) + "_largest", std::to_string(error.largest));
+        RecordProperty(std::string(scene) + "_mean", std::to_string(error.meanAbsolute));
+    }
+}
+
+}  // namespace
+}  // namespace gnomon::renderer::image_test

@@ -1,0 +1,74 @@
+// The same input gives the same picture: on one device, bit by bit, however atomics fall; and shadowmaps that were kept
+// from an earlier frame show what newly drawn ones would.
+#include "image/renderer/harness.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace gnomon::renderer::image_test {
+namespace {
+
+GNOMON_IMAGE_TEST_SUITE(Repeated);
+
+std::string hashOfLinear(const HdrPicture& picture) {
+    return hashOf(toneMap(picture, automaticExposure(picture)));
+}
+
+// With a quarter of the slots it is chance which tiles get one; without overflow, which slot a tile gets.
+void expectOneHash(const Device& device, const RendererDesc& desc, const char* name) {
+    SCOPED_TRACE(name);
+    const View3d view = builtin("columns", 64);
+    HdrPicture first;
+    for (int run = 0; run < 2; ++run) {
+        Renderer renderer(device, view.scene, desc);
+        for (int frame = 0; frame < 3; ++frame) {
+            const HdrPicture picture = draw(renderer, view.camera, ShadowMode::Deferred).linear;
+            if (first.rgba.empty()) first = picture;
+            EXPECT_EQ(hashOfLinear(picture), hashOfLinear(first)) << "run " << run << ", frame " << frame;
+            EXPECT_TRUE(picture.rgba == first.rgba) << "run " << run << ", frame " << frame;
+        }
+    }
+}
+
+TEST_P(Repeated, SameInputSamePicture) {
+    expectOneHash(device(), smallDesc(), "default pools");
+    RendererDesc few = smallDesc();
+    few.visibilitySlots = 300;
+    few.listEntries = 1500;
+    expectOneHash(device(), few, "pools that overflow");
+}
+
+SceneCamera moved(SceneCamera camera, const glm::vec3& by) {
+    camera.worldFromCamera = glm::translate(glm::mat4(1.0f), by) * camera.worldFromCamera;
+    return camera;
+}
+
+TEST_P(Repeated, ShadowmapsAreKept) {
+    Worst worst;
+    for (const char* scene : {"courtyard", "columns", "cloth"}) {
+        SCOPED_TRACE(scene);
+        const View3d view = builtin(scene);
+        Renderer kept(device(), view.scene, smallDesc());
+        const Frame first = draw(kept, view.camera, ShadowMode::Deferred);
+        EXPECT_GT(first.report.shadowViewsDrawn, 0u);
+        const Frame still = draw(kept, view.camera, ShadowMode::Deferred);
+        EXPECT_EQ(still.report.shadowViewsDrawn, 0u);
+        EXPECT_EQ(still.report.shadowTrianglesDrawn, 0u);
+        worst.add(expectEqual(device(), view.name + " still", first.linear, still.linear, 0), view.name);
+        // A small step: lights keep their resolution, so a renderer that starts there has the same shadowmaps.
+        View3d there = view;
+        there.camera = moved(view.camera, {0.05f, 0.02f, -0.05f});
+        const Frame after = draw(kept, there.camera, ShadowMode::Deferred);
+        const Frame fresh = drawOnce(device(), there, smallDesc(), ShadowMode::Deferred);
+        worst.add(expectEqual(device(), view.name + " moved", fresh.linear, after.linear, 1), view.name);
+        EXPECT_LT(after.report.shadowViewsDrawn, fresh.report.shadowViewsDrawn);
+        // A large step and back again: what was thrown out meanwhile is drawn anew.
+        const SceneCamera far = moved(view.camera, {6.0f, 2.0f, -5.0f});
+        const Frame farDeferred = draw(kept, far, ShadowMode::Deferred);
+        const Frame farInline = draw(kept, far, ShadowMode::Inline);
+        worst.add(expectEqual(device(), view.name + " far", farInline.linear, farDeferred.linear, 1), view.name);
+    }
+    worst.report(device(), "kept shadowmaps");
+}
+
+}  // namespace
+}  // namespace gnomon::renderer::image_test

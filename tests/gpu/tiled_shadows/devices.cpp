@@ -26,9 +26,23 @@ struct Session {
     std::vector<std::unique_ptr<TestDevice>> devices;  // made when first used
 };
 
+/// Frees everything before the program's exit, when drivers may have taken down their own statics.
+class Teardown : public ::testing::Environment {
+public:
+    explicit Teardown(Session& session) : session_(session) {}
+    void TearDown() override {
+        session_.devices.clear();
+        session_.instance.reset();
+    }
+
+private:
+    Session& session_;
+};
+
 Session& session() {
     static Session s;
     if (s.instance) return s;
+    ::testing::AddGlobalTestEnvironment(new Teardown(s));  // owned by GoogleTest
     addSoftwareDrivers();
     try {
         s.instance.emplace(renderer::InstanceDesc{.validation = true});
@@ -95,14 +109,14 @@ ContextDesc TestDevice::contextDesc(const ContextSetup& setup) const {
     desc.listReservation = setup.reservation;
     desc.fixedListEntriesPerTile = setup.fixedEntries;
     desc.hostDepthPyramid = setup.hostDepthPyramid;
-    if (setup.checkerboard) desc.generateShadowsSpirv = kHostProviderSpirv;
+    if (setup.hostProvider) desc.generateShadowsSpirv = kHostProviderSpirv;
     return desc;
 }
 
 const Context* TestDevice::context(const ContextSetup& setup) {
     char key[64];
     std::snprintf(key, sizeof(key), "%d %u %d %u %u %d %d", int(setup.filter), setup.pcfRadius, int(setup.reservation),
-                  setup.fixedEntries, setup.subgroupSize, int(setup.hostDepthPyramid), int(setup.checkerboard));
+                  setup.fixedEntries, setup.subgroupSize, int(setup.hostDepthPyramid), int(setup.hostProvider));
     std::unique_ptr<Context>& context = contexts_[key];
     if (context == nullptr) {
         const Result made = Context::create(contextDesc(setup), context);

@@ -21,7 +21,7 @@ struct ContextSetup {
     std::uint32_t fixedEntries = 0;
     std::uint32_t subgroupSize = 0;
     bool hostDepthPyramid = false;
-    bool checkerboard = false;  ///< phase 4 with the provider of host_provider/gnomon_host_provider.glsl
+    bool hostProvider = false;  ///< phase 4 with host_provider/gnomon_host_provider.glsl
 };
 
 /// A logical device and its contexts, alive until the program ends.

@@ -1,0 +1,123 @@
+// Seeded random views: no light that reaches a pixel is ever missing from its tile's early list, no accurate count
+// exceeds the approximate one, and the broken-invariant counter stays 0. GNOMON_FULL=1 runs many more.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "checks.h"
+#include "scenes.h"
+
+namespace gnomon::test {
+namespace {
+
+class PropertyTest : public GpuTest {};
+GNOMON_ON_EVERY_DEVICE(PropertyTest);
+
+constexpr std::uint32_t kWidth = 40, kHeight = 24;
+
+void move(float position[3], reference::Vec3 by) {
+    position[0] += static_cast<float>(by.x);
+    position[1] += static_cast<float>(by.y);
+    position[2] += static_cast<float>(by.z);
+}
+
+/// A room of its own, far from the origin at times, with cones from hair-thin to half-spaces and ranges of centimetres to
+/// kilometres.
+FrameInput randomFrame(std::uint64_t seed, bool& dropFacedAway) {
+    reference::Random random(seed);
+    RoomSetup setup;
+    setup.seed = seed;
+    setup.widthPx = 1 + random.below(kWidth);
+    setup.heightPx = 1 + random.below(kHeight);
+    setup.camera = reference::randomCamera(random);
+    const double far = random.chance(0.3) ? random.uniform(100, 8000) : 0.0;
+    const reference::Vec3 offset = {far, far * 0.1, -far};
+    FrameInput input;
+    reference::Shapes shapes = reference::makeRoom(random, 3 + random.below(10));
+    reference::LightSetup lights;
+    lights.count = 5 + random.below(55);
+    lights.spotShare = random.uniform();
+    lights.maxRangeMetres = random.chance(0.3) ? 40 : 5;
+    lights.spreadMetres = random.uniform(1, 20);
+    input.lights = reference::makeLights(random, setup.camera, lights);
+    for (Light& light : input.lights) {
+        if (light.firstShadowView != kNoShadowViews) light.firstShadowView = 0;
+        if (light.type == LightType::Spot && random.chance(0.5))
+            light.outerConeAngle = static_cast<float>(std::exp(random.uniform(std::log(5e-4), std::log(1.55))));
+        if (random.chance(0.1)) light.rangeMetres = static_cast<float>(std::exp(random.uniform(-3, 8)));
+        move(light.position, offset);
+    }
+    setup.camera.eye = setup.camera.eye + offset;
+    setup.camera.target = setup.camera.target + offset;
+    for (reference::Shape& shape : shapes) {
+        shape.a = shape.a + offset;
+        if (shape.kind == reference::Shape::Kind::Box) shape.b = shape.b + offset;
+    }
+    input.widthPx = setup.widthPx;
+    input.heightPx = setup.heightPx;
+    input.camera = reference::makeCamera(setup.camera, setup.widthPx, setup.heightPx);
+    input.receivers = reference::renderReceivers(shapes, input.camera, setup.widthPx, setup.heightPx);
+    input.shadows = sharedPlainShadows();
+    input.viewportXPx = random.below(24);
+    dropFacedAway = random.chance(0.5);
+    return input;
+}
+
+TEST_P(PropertyTest, NoLightIsEverLost) {
+    ViewDesc desc;
+    desc.maxWidthPx = kWidth;
+    desc.maxHeightPx = kHeight;
+    desc.listEntries = 15 * 66;
+    desc.visibilitySlots = 15 * 64;
+    desc.maxShadowViews = 6;
+    const std::uint64_t seeds = fullRun() ? 10000 : 300;
+    std::size_t must = 0, may = 0, bytes = 0;
+    Rig approximate(device(), {.reservation = ListReservation::Approximate}, desc);
+    Rig accurate(device(), {.filter = Filter::Hard, .reservation = ListReservation::Accurate}, desc);
+    ASSERT_TRUE(approximate.ok() && accurate.ok());
+    for (std::uint64_t seed = 1; seed <= seeds && !HasFailure(); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        FrameInput input;
+        {
+            bool drop = true;
+            input = randomFrame(seed, drop);
+            input.dropLightsFacedAway = drop;
+        }
+        Rig& rig = seed % 2 == 0 ? approximate : accurate;
+        const FrameResult result = rig.run(input);
+        const Checked checked = checkFrame(input, result, {.bytes = seed % 4 < 2});
+        must += checked.early.must;
+        may += checked.early.may;
+        bytes += checked.shadows.bytes;
+    }
+    EXPECT_GT(must, seeds * 20);
+    EXPECT_LT(double(may), 0.05 * double(must));
+    std::printf("  %llu seeds: must %zu, may %zu, bytes %zu\n", static_cast<unsigned long long>(seeds), must, may, bytes);
+}
+
+// Pools of random, too small sizes under random views: lists stay sound.
+TEST_P(PropertyTest, RandomOverflow) {
+    const std::uint64_t seeds = fullRun() ? 200 : 12;
+    for (std::uint64_t seed = 1; seed <= seeds && !HasFailure(); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        reference::Random random(seed + 5000);
+        ViewDesc desc;
+        desc.maxWidthPx = kWidth;
+        desc.maxHeightPx = kHeight;
+        desc.listEntries = 1 + random.below(150);
+        desc.visibilitySlots = 1 + random.below(40);
+        desc.maxShadowViews = 6;
+        const auto reservation = static_cast<ListReservation>(random.below(3));
+        Rig rig(device(), {.reservation = reservation, .fixedEntries = 10}, desc);
+        ASSERT_TRUE(rig.ok());
+        for (std::uint64_t i = 0; i < 5; ++i) {
+            bool drop = true;
+            FrameInput input = randomFrame(seed * 100 + i, drop);
+            input.dropLightsFacedAway = drop;
+            checkFrame(input, rig.run(input), {.bytes = false, .listOverflow = true, .slotOverflow = true});
+        }
+    }
+}
+
+}  // namespace
+}  // namespace gnomon::test

@@ -119,13 +119,10 @@ Facing facingOf(const LightModel& light, const Pixel& pixel) {
     return facing;
 }
 
-/// sqrt(1 - c^2), smallest to largest.
-void sineRange(const Facing& facing, double& lowest, double& highest) {
-    const double cosine = std::min(std::abs(facing.cosine), 1.0);
-    const double error = facing.cosineError;
-    const double large = std::min(1.0, cosine + error), small = std::max(0.0, cosine - error);
-    lowest = std::sqrt(std::max(0.0, 1.0 - large * large));
-    highest = std::sqrt(std::max(0.0, 1.0 - small * small));
+/// |n.X| + |n.Y| for the view's lateral axes X and Y: how steeply a plane with normal n rises across the view's texels.
+double slantOf(const ShadowViewModel& view, Vec3 normal) {
+    const Vec3 x = rowOf(view.clipFromWorld, 0), y = rowOf(view.clipFromWorld, 1);
+    return std::abs(dot(normal, x)) / length(x) + std::abs(dot(normal, y)) / length(y);
 }
 
 Visibility sampleView(const ShadowViewModel& view, const LightModel& light, const Pixel& pixel, const Facing& facing,
@@ -135,10 +132,9 @@ Visibility sampleView(const ShadowViewModel& view, const LightModel& light, cons
     const int radius = input.filter == ShadowFilter::Pcf ? input.pcfRadius : 0;
     const double texel = view.orthographic ? view.texelMetres : view.texelMetres * std::max(first.linearDepth, 0.0);
     const double texelError = (view.orthographic ? 0.0 : view.texelMetres * first.linearDepthError) + 1e-6 * texel;
-    double sineMin = 0, sineMax = 0;
-    sineRange(facing, sineMin, sineMax);
-    const double offset = texel * (radius + 1.0) * 0.5 * (sineMin + sineMax);
-    const double offsetError = (radius + 1.0) * (texel * 0.5 * (sineMax - sineMin) + texelError * sineMax);
+    const double slant = slantOf(view, facing.normal);
+    const double offset = texel * (radius + 1.0) * slant;
+    const double offsetError = (radius + 1.0) * (texel * kRoundings * kFloatRoundoff + texelError * slant);
     const Vec3 moved = pixel.position + facing.normal * (sign * offset);
     const double movedError =
         pixel.positionError + offsetError + kRoundings * kFloatRoundoff * (offset + sumOfMagnitudes(moved));
@@ -158,6 +154,7 @@ Visibility sampleView(const ShadowViewModel& view, const LightModel& light, cons
         device = view.depth.a + view.depth.b / linear;
         slope /= linear * linear;
     }
+    device += (view.reversed ? 1e-6 : -1e-6) * (std::abs(view.depth.a) + std::abs(device - view.depth.a));
     const double depthError =
         slope * linearError + kRoundings * kFloatRoundoff * (std::abs(view.depth.a) + std::abs(device - view.depth.a));
     return filterAt(view, input.atlases[view.atlas], input.filter, radius, at.xPx, at.yPx, errorPx, device, depthError);

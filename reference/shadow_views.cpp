@@ -8,10 +8,6 @@ namespace {
 
 constexpr double kRoundings = 8;
 
-Vec3 rowOf(const Mat4& a, int row) {
-    return {a.m[row][0], a.m[row][1], a.m[row][2]};
-}
-
 struct Bounded {
     double value = 0, error = 0;
 };

@@ -127,4 +127,9 @@ inline Mat4 inverse(Mat4 a) {
     return result;
 }
 
+/// The first three elements of a row.
+inline Vec3 rowOf(const Mat4& a, int row) {
+    return {a.m[row][0], a.m[row][1], a.m[row][2]};
+}
+
 }  // namespace gnomon::reference

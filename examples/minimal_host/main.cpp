@@ -184,7 +184,6 @@ void createLights(std::vector<gnomon::Light>& lights, std::vector<gnomon::Shadow
     for (uint32_t i = 0; i < 8; ++i) {  // two spots above, and below the six views of a point light
         gnomon::Light& light = lights[std::min(i, 2u)];
         light.firstShadowView = std::min(i, 2u);
-        light.biasMetres = 0.03f;  // about a texel: these shadowmaps are coarse
         const uint32_t sizePx = i < 2 ? 512 : 256, xPx = i % 4 * sizePx, yPx = i < 2 ? 0 : 512 + i / 4 % 2 * 256;
         // Four texels more on each side, for filters at the border.
         const float tangent = (i < 2 ? std::tan(light.outerConeAngle) : 1) * float(sizePx) / float(sizePx - 8);

@@ -48,7 +48,7 @@ ShadowPoint shadowPointOf(GpuLight light, Receiver receiver, vec3 toLight, float
 
     precise float receiverDepth = linearDepthOf(view, clipFromWorld(view, receiver.positionWs));
     precise float texelMetres = orthographic ? view.texelMetres : view.texelMetres * receiverDepth;
-    precise vec3 p = receiver.positionWs + normalOffset(receiver, toLight, texelMetres, filterRadius);
+    precise vec3 p = receiver.positionWs + normalOffset(view, receiver, toLight, texelMetres, filterRadius);
     precise vec4 clip = clipFromWorld(view, p);
     precise float linear = linearDepthOf(view, clip) - linearBias(light, receiver);
 
@@ -56,14 +56,16 @@ ShadowPoint shadowPointOf(GpuLight light, Receiver receiver, vec3 toLight, float
     s.inFront = clip.w > 0.0;
     precise float depth = orthographic ? view.depthFromLinearA + view.depthFromLinearB * linear
                                        : view.depthFromLinearA + view.depthFromLinearB / max(linear, 1e-4);
-    s.depth = depth;
+    s.reversedZ = (view.flags & kShadowViewReversedZBit) != 0u;
+    precise float slack = deviceDepthSlack(view, depth);
+    precise float biased = s.reversedZ ? depth + slack : depth - slack;
+    s.depth = biased;
     precise vec2 px = clip.xy / clip.w * view.pxFromNdcScale + view.pxFromNdcOffset;
     float border = filterRadius > 0.0 ? filterRadius + 1.0 : 0.5;
     s.px = clamp(px, view.rectMinPx + border, view.rectMaxPx - border);
     s.atlas = view.atlasAndLayer & 0xFFu;
     s.layer = float(view.atlasAndLayer >> 8u);
     s.atlasPerTexel = vec2(view.atlasPerTexelX, view.atlasPerTexelY);
-    s.reversedZ = (view.flags & kShadowViewReversedZBit) != 0u;
     return s;
 }
 

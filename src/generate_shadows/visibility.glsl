@@ -8,6 +8,8 @@
 #ifndef GNOMON_GENERATE_SHADOWS_VISIBILITY_GLSL
 #define GNOMON_GENERATE_SHADOWS_VISIBILITY_GLSL
 
+#include "gpu_interface/numbers.h"
+
 layout(constant_id = 1) const uint kProvider = kProviderPcf;
 layout(constant_id = 3) const uint kPcfRadius = 1;
 

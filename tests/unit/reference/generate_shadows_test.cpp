@@ -259,7 +259,7 @@ TEST(GenerateShadows, SubsurfaceBiasReachesThroughThinWalls) {
 }
 
 struct FinalLists : testing::Test {
-    TestFrame frame = makeTestFrame(8, 130, 70, 40);
+    TestFrame frame = makeTestFrame(8, 260, 140, 40);
     std::vector<TileLights> expected = findLights(frame.grid, frame.lights, true);
     HonestBuffers honest = makeHonestBuffers(frame, expected);
     ShadowReport check(const HonestBuffers& buffers, bool mayEvaluate = false) const {

@@ -2,6 +2,7 @@
 // exceeds the approximate one, and the broken-invariant counter stays 0. GNOMON_FULL=1 runs many more.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 
 #include "checks.h"
@@ -23,19 +24,20 @@ void move(float position[3], reference::Vec3 by) {
 
 /// A room of its own, far from the origin at times, with cones from hair-thin to half-spaces and ranges of centimetres to
 /// kilometres.
-FrameInput randomFrame(std::uint64_t seed, bool& dropFacedAway) {
+FrameInput randomFrame(std::uint64_t seed) {
     reference::Random random(seed);
     RoomSetup setup;
+    FrameInput input;
     setup.seed = seed;
+    setup.camera = reference::randomCamera(random);
     setup.widthPx = 1 + random.below(kWidth);
     setup.heightPx = 1 + random.below(kHeight);
-    setup.camera = reference::randomCamera(random);
     const double far = random.chance(0.3) ? random.uniform(100, 8000) : 0.0;
     const reference::Vec3 offset = {far, far * 0.1, -far};
-    FrameInput input;
     reference::Shapes shapes = reference::makeRoom(random, 3 + random.below(10));
     reference::LightSetup lights;
     lights.count = 5 + random.below(55);
+    lights.directionalShare = 0;
     lights.spotShare = random.uniform();
     lights.maxRangeMetres = random.chance(0.3) ? 40 : 5;
     lights.spreadMetres = random.uniform(1, 20);
@@ -58,8 +60,11 @@ FrameInput randomFrame(std::uint64_t seed, bool& dropFacedAway) {
     input.camera = reference::makeCamera(setup.camera, setup.widthPx, setup.heightPx);
     input.receivers = reference::renderReceivers(shapes, input.camera, setup.widthPx, setup.heightPx);
     input.shadows = sharedPlainShadows();
+    Light sun;
+    sun.type = LightType::Directional;
+    for (std::uint32_t i = random.below(3); i > 0; --i) input.lights.push_back(sun);
     input.viewportXPx = random.below(24);
-    dropFacedAway = random.chance(0.5);
+    input.dropLightsFacedAway = random.chance(0.5);
     return input;
 }
 
@@ -71,18 +76,18 @@ TEST_P(PropertyTest, NoLightIsEverLost) {
     desc.visibilitySlots = 15 * 64;
     desc.maxShadowViews = 6;
     const std::uint64_t seeds = fullRun() ? 10000 : 300;
+    std::uint64_t done = 0;
     std::size_t must = 0, may = 0, bytes = 0;
+    const auto start = std::chrono::steady_clock::now();
     Rig approximate(device(), {.reservation = ListReservation::Approximate}, desc);
     Rig accurate(device(), {.filter = Filter::Hard, .reservation = ListReservation::Accurate}, desc);
     ASSERT_TRUE(approximate.ok() && accurate.ok());
-    for (std::uint64_t seed = 1; seed <= seeds && !HasFailure(); ++seed) {
+    for (std::uint64_t seed = 1; seed <= seeds && !HasFailure(); ++seed, ++done) {
+        // Lavapipe compiles two shaders anew for most cameras, half a second each time unless Mesa's cache on disk
+        // has them.
+        if (!fullRun() && done >= 60 && std::chrono::steady_clock::now() - start > std::chrono::seconds(20)) break;
         SCOPED_TRACE("seed " + std::to_string(seed));
-        FrameInput input;
-        {
-            bool drop = true;
-            input = randomFrame(seed, drop);
-            input.dropLightsFacedAway = drop;
-        }
+        const FrameInput input = randomFrame(seed);
         Rig& rig = seed % 2 == 0 ? approximate : accurate;
         const FrameResult result = rig.run(input);
         const Checked checked = checkFrame(input, result, {.bytes = seed % 4 < 2});
@@ -90,14 +95,14 @@ TEST_P(PropertyTest, NoLightIsEverLost) {
         may += checked.early.may;
         bytes += checked.shadows.bytes;
     }
-    EXPECT_GT(must, seeds * 20);
+    EXPECT_GT(must, done * 20);
     EXPECT_LT(double(may), 0.05 * double(must));
-    std::printf("  %llu seeds: must %zu, may %zu, bytes %zu\n", static_cast<unsigned long long>(seeds), must, may, bytes);
+    std::printf("  %llu seeds: must %zu, may %zu, bytes %zu\n", static_cast<unsigned long long>(done), must, may, bytes);
 }
 
 // Pools of random, too small sizes under random views: lists stay sound.
 TEST_P(PropertyTest, RandomOverflow) {
-    const std::uint64_t seeds = fullRun() ? 200 : 12;
+    const std::uint64_t seeds = fullRun() ? 200 : 6;
     for (std::uint64_t seed = 1; seed <= seeds && !HasFailure(); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         reference::Random random(seed + 5000);
@@ -110,10 +115,8 @@ TEST_P(PropertyTest, RandomOverflow) {
         const auto reservation = static_cast<ListReservation>(random.below(3));
         Rig rig(device(), {.reservation = reservation, .fixedEntries = 10}, desc);
         ASSERT_TRUE(rig.ok());
-        for (std::uint64_t i = 0; i < 5; ++i) {
-            bool drop = true;
-            FrameInput input = randomFrame(seed * 100 + i, drop);
-            input.dropLightsFacedAway = drop;
+        for (std::uint64_t i = 0; i < 3; ++i) {
+            const FrameInput input = randomFrame(seed * 100 + i);
             checkFrame(input, rig.run(input), {.bytes = false, .listOverflow = true, .slotOverflow = true});
         }
     }

@@ -306,4 +306,29 @@ FrameResult Rig::run(const FrameInput& input, const RunOptions& options) {
     return result;
 }
 
+void Rig::runInFlight(const std::vector<FrameInput>& inputs) {
+    std::vector<std::unique_ptr<renderer::Commands>> submissions;
+    for (const FrameInput& input : inputs) {
+        const Result begun = begin(input);
+        ASSERT_TRUE(begun.ok()) << begun.message();
+        submissions.push_back(std::make_unique<renderer::Commands>(device_.vulkan()));
+        const VkCommandBuffer commands = submissions.back()->begin();
+        if (submissions.size() == 1) recordUploads(commands, input);
+        recordPhases(commands, {});
+        submissions.back()->submit();
+    }
+    for (const auto& submission : submissions) submission->wait();
+}
+
+void Rig::dropImages() {
+    device_.vulkan().waitIdle();
+    depth_ = {};
+    faceNormals_ = {};
+    receiverFlags_ = {};
+    pyramid_ = {};
+    shadows_.reset();
+    atlases_.clear();
+    atlasDescs_.clear();
+}
+
 }  // namespace gnomon::test

@@ -66,6 +66,11 @@ public:
 
     /// Waits for the device. Fails the test where a call of the library fails.
     FrameResult run(const FrameInput& input, const RunOptions& options = {});
+    /// One submission per input, all recorded before any is waited for; at most ViewDesc::framesInFlight of them. The
+    /// images are those of the first.
+    void runInFlight(const std::vector<FrameInput>& inputs);
+    /// Destroys all images, so that the next frame makes new ones.
+    void dropImages();
     /// Phase 1 alone; images are made, nothing is recorded.
     Result begin(const FrameInput& input, PrepareReport* report = nullptr);
     /// What beginFrame() is given, to be spoilt by tests of misuse; valid until the next call.
@@ -76,7 +81,6 @@ public:
     [[nodiscard]] std::uint64_t lastFrame() const { return nextFrame_ - 1; }
 
 private:
-    struct Upload;
     void makeImages(const FrameInput& input);
     void recordUploads(VkCommandBuffer commands, const FrameInput& input);
     void recordFill(VkCommandBuffer commands) const;

@@ -210,12 +210,11 @@ void writeListsSets(View::State& state) {
     }
 }
 
-// Points the image bindings at the frame's images, where they changed since this slot was last used.
+// Points the image bindings at the frame's images. Every frame anew: a host that destroys an image view and makes another
+// may get the same handle back, so equal handles prove nothing.
 void writeImages(const DeviceContext& device, VkDescriptorSet set, std::uint32_t firstBinding,
-                 std::span<const VkImageView> views, VkImageView* bound) {
+                 std::span<const VkImageView> views) {
     for (std::uint32_t i = 0; i < views.size(); ++i) {
-        if (bound[i] == views[i]) continue;
-        bound[i] = views[i];
         const VkDescriptorImageInfo info = {VK_NULL_HANDLE, views[i], VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
         const VkWriteDescriptorSet write = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, set, firstBinding + i, 0, 1,
                                             VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, &info, nullptr, nullptr};
@@ -229,12 +228,12 @@ void bindImages(View::State& state, FrameSlot& slot, const FrameDesc& frame) {
     const VkImageView receivers[kReceiversBindingCount] = {
         frame.depth.view, orElse(frame.faceNormals.view, state.noFaceNormals.view),
         orElse(frame.receiverFlags.view, state.noFaceNormals.view), orElse(frame.depthPyramid.view, frame.depth.view)};
-    writeImages(device, slot.receivers, kBindDepth, receivers, slot.boundReceivers);
+    writeImages(device, slot.receivers, kBindDepth, receivers);
     VkImageView atlases[kMaxShadowAtlases] = {};
     for (std::uint32_t i = 0; i < kMaxShadowAtlases; ++i) {
         atlases[i] = i < frame.atlases.size() ? frame.atlases[i].view : state.noAtlas.view;
     }
-    writeImages(device, slot.shadowmaps, kBindShadowAtlas0, atlases, slot.boundAtlases);
+    writeImages(device, slot.shadowmaps, kBindShadowAtlas0, atlases);
 }
 
 Result checkFrame(const View::State& state, const FrameDesc& frame) {

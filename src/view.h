@@ -36,8 +36,6 @@ struct FrameSlot {
     VkDescriptorSet lists = VK_NULL_HANDLE;
     VkDescriptorSet receivers = VK_NULL_HANDLE;
     VkDescriptorSet shadowmaps = VK_NULL_HANDLE;
-    VkImageView boundReceivers[gpu::kReceiversBindingCount] = {};
-    VkImageView boundAtlases[gpu::kMaxShadowAtlases] = {};
     PrepareReport lights;
     double prepareMilliseconds = 0.0;
     std::uint32_t passBits = 0;  // passes recorded, by PassId

@@ -20,7 +20,6 @@ void addSoftwareDrivers() {
 }
 
 struct Session {
-    bool validation = true;
     std::optional<renderer::VulkanInstance> instance;
     std::vector<renderer::DeviceInfo> infos;
     std::vector<std::unique_ptr<TestDevice>> devices;  // made when first used
@@ -48,7 +47,6 @@ Session& session() {
         s.instance.emplace(renderer::InstanceDesc{.validation = true});
     } catch (const renderer::GpuError& error) {
         std::printf("without validation: %s\n", error.what());
-        s.validation = false;
         s.instance.emplace(renderer::InstanceDesc{.validation = false});
     }
     for (const renderer::DeviceInfo& info : s.instance->listDevices()) {
@@ -64,7 +62,6 @@ Session& session() {
 }  // namespace
 
 renderer::VulkanInstance& testInstance() { return *session().instance; }
-bool validationPresent() { return session().validation; }
 
 bool fullRun() {
     const char* value = std::getenv("GNOMON_FULL");
@@ -86,15 +83,15 @@ std::string deviceName(const ::testing::TestParamInfo<std::size_t>& info) {
     return name + std::to_string(info.param);
 }
 
-TestDevice::TestDevice(const renderer::DeviceInfo& info)
-    : device_(std::make_unique<renderer::Device>(testInstance(), info)) {
-    std::printf("device: %s, %s, subgroups of %u (%u to %u), validation %s\n", info.name.c_str(), info.driver.c_str(),
-                info.subgroupSize, info.minSubgroupSize, info.maxSubgroupSize, validationPresent() ? "on" : "off");
+TestDevice::TestDevice(const renderer::VulkanInstance& instance, const renderer::DeviceInfo& info)
+    : instance_(instance), device_(std::make_unique<renderer::Device>(instance, info)) {
+    std::printf("device: %s, %s, subgroups of %u (%u to %u)\n", info.name.c_str(), info.driver.c_str(), info.subgroupSize,
+                info.minSubgroupSize, info.maxSubgroupSize);
 }
 
 ContextDesc TestDevice::contextDesc(const ContextSetup& setup) const {
     ContextDesc desc;
-    desc.instance = testInstance().handle();
+    desc.instance = instance_.handle();
     desc.physicalDevice = device_->physical();
     desc.device = device_->handle();
     desc.getInstanceProcAddr = vkGetInstanceProcAddr;
@@ -102,7 +99,7 @@ ContextDesc TestDevice::contextDesc(const ContextSetup& setup) const {
     static thread_local std::uint32_t family = 0;  // must outlive the call of Context::create
     family = device_->queueFamily();
     desc.queueFamilies = std::span(&family, 1);
-    desc.debugLabels = testInstance().debugLabels();
+    desc.debugLabels = instance_.debugLabels();
     desc.subgroupSize = setup.subgroupSize;
     desc.filter = setup.filter;
     desc.pcfRadius = setup.pcfRadius;
@@ -127,7 +124,7 @@ const Context* TestDevice::context(const ContextSetup& setup) {
 
 TestDevice& GpuTest::device() {
     std::unique_ptr<TestDevice>& slot = session().devices[GetParam()];
-    if (slot == nullptr) slot = std::make_unique<TestDevice>(session().infos[GetParam()]);
+    if (slot == nullptr) slot = std::make_unique<TestDevice>(testInstance(), session().infos[GetParam()]);
     return *slot;
 }
 

@@ -27,7 +27,7 @@ struct ContextSetup {
 /// A logical device and its contexts, alive until the program ends.
 class TestDevice {
 public:
-    explicit TestDevice(const renderer::DeviceInfo& info);
+    TestDevice(const renderer::VulkanInstance& instance, const renderer::DeviceInfo& info);
     [[nodiscard]] const renderer::Device& vulkan() const { return *device_; }
     /// Fails the test and returns null where the context cannot be made.
     const Context* context(const ContextSetup& setup);
@@ -35,12 +35,12 @@ public:
     [[nodiscard]] ContextDesc contextDesc(const ContextSetup& setup) const;
 
 private:
+    const renderer::VulkanInstance& instance_;
     std::unique_ptr<renderer::Device> device_;  // outlives the contexts
     std::map<std::string, std::unique_ptr<Context>> contexts_;
 };
 
 [[nodiscard]] renderer::VulkanInstance& testInstance();
-[[nodiscard]] bool validationPresent();
 /// Indices of all suitable devices.
 [[nodiscard]] std::vector<std::size_t> deviceIndices();
 [[nodiscard]] std::string deviceName(const ::testing::TestParamInfo<std::size_t>& info);

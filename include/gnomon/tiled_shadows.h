@@ -129,7 +129,7 @@ struct HostImage {
 };
 
 struct ShadowAtlas {
-    VkImageView view = VK_NULL_HANDLE;  ///< 2D array view of the depth aspect, sampled, with linear tiling features not needed
+    VkImageView view = VK_NULL_HANDLE;  ///< 2D array view of the depth aspect of a D32 or D16 image
     std::uint32_t widthPx = 0, heightPx = 0, layers = 1;
 };
 
@@ -144,7 +144,9 @@ struct FrameDesc {
     HostImage depth;          ///< D32, D24 or D16 aspect view, 2D
     HostImage faceNormals;    ///< optional: R16G16_UINT, octahedral, the side the camera sees (src/shading/octahedral.glsl)
     HostImage receiverFlags;  ///< optional: R8G8_UINT: receiver mask; bit 0: subsurface
-    HostImage depthPyramid;   ///< with ContextDesc::hostDepthPyramid: R32G32_SFLOAT, min and max device depth per tile
+    /// With ContextDesc::hostDepthPyramid: R32G32_SFLOAT, min and max device depth per tile; texel (0, 0) is the first tile
+    /// of the active viewport.
+    HostImage depthPyramid;
     std::span<const ShadowAtlas> atlases;  ///< up to 4
     float subsurfaceBiasMetres = 0.02f;
     bool dropLightsFacedAway = true;  ///< phase 3 drops lights that every pixel of a tile looks away from
@@ -194,7 +196,8 @@ public:
     Result beginFrame(const FrameDesc& frame, PrepareReport* report = nullptr) noexcept;
 
     // Each records one pass with its barriers, debug label and timestamps. Before and after, the library's buffers need
-    // no barrier by the host as long as everything runs on one queue; across queues a semaphore is enough.
+    // no barrier by the host as long as everything runs on one queue. Across queues a semaphore is enough; since the
+    // lists exist once per view, the next frame's recordHierarchicalDepth() must wait for this frame's recordEndFrame().
     void recordHierarchicalDepth(VkCommandBuffer commands) noexcept;
     void recordFindLightsApproximate(VkCommandBuffer commands) noexcept;
     /// Afterwards the early lists are visible to all shaders. A host that evaluates every shadow while lighting may leave

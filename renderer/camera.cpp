@@ -11,7 +11,8 @@ void store(const glm::dmat4& matrix, float out[16]) {
     std::memcpy(out, &m[0][0], 16 * sizeof(float));
 }
 
-// Device depth = (a * z + b) / w with z the view depth; `near` at 1 and `far` at 0 if reversed, else the other way round.
+// Device depth = (a * z + b) / w with z the view depth; `near` at 1 and `far` at 0 if reversed, else the other way
+// round.
 glm::dmat4 perspective(const SceneCamera& camera, double aspect, bool reversed) {
     const double n = camera.nearMetres;
     const double f = camera.farMetres;

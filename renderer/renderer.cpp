@@ -62,9 +62,12 @@ std::unique_ptr<View> makeView(const Context& context, const RendererDesc& desc)
 
 LightType typeOf(LightKind kind) {
     switch (kind) {
-        case LightKind::Point: return LightType::Point;
-        case LightKind::Spot: return LightType::Spot;
-        case LightKind::Directional: return LightType::Directional;
+        case LightKind::Point:
+            return LightType::Point;
+        case LightKind::Spot:
+            return LightType::Spot;
+        case LightKind::Directional:
+            return LightType::Directional;
     }
     return LightType::Point;
 }
@@ -97,8 +100,8 @@ ShadowPlanCamera planCameraOf(const SceneCamera& camera, const GBufferCamera& gb
 ShadowPlanSettings planSettingsOf(const Device& device, const RendererDesc& desc) {
     ShadowPlanSettings settings;
     const std::uint32_t largest = std::bit_floor(device.limits().maxFramebufferWidth);
-    const std::uint32_t wanted = desc.atlasSizePx != 0 ? desc.atlasSizePx
-                                                       : ShadowAtlasImage::defaultSizePx(device, desc.heightPx);
+    const std::uint32_t wanted =
+        desc.atlasSizePx != 0 ? desc.atlasSizePx : ShadowAtlasImage::defaultSizePx(device, desc.heightPx);
     settings.atlasSizePx = std::min(std::bit_floor(wanted), largest);
     return settings;
 }
@@ -157,7 +160,8 @@ Renderer::~Renderer() {
     if (state_ != nullptr) state_->device.waitIdle();
 }
 
-std::vector<Light> Renderer::State::lightsOf(const glm::dvec3& origin, std::span<const std::uint32_t> firstViews) const {
+std::vector<Light> Renderer::State::lightsOf(const glm::dvec3& origin,
+                                             std::span<const std::uint32_t> firstViews) const {
     std::vector<Light> lights;
     lights.reserve(sceneLights.size());
     for (std::size_t i = 0; i < sceneLights.size(); ++i) {
@@ -236,8 +240,12 @@ void Renderer::State::recordPasses(VkCommandBuffer c, const GBufferCamera& camer
             view->recordGenerateShadows(c);
             lighting.recordDeferred(c, *view, &timer);
             break;
-        case ShadowMode::Inline: lighting.recordInline(c, *view, LightingVariant::Inline, &timer); break;
-        case ShadowMode::Off: lighting.recordInline(c, *view, LightingVariant::Unshadowed, &timer); break;
+        case ShadowMode::Inline:
+            lighting.recordInline(c, *view, LightingVariant::Inline, &timer);
+            break;
+        case ShadowMode::Off:
+            lighting.recordInline(c, *view, LightingVariant::Unshadowed, &timer);
+            break;
     }
     view->recordEndFrame(c);
 }
@@ -284,7 +292,8 @@ FrameReport Renderer::report(std::uint64_t frameNumber) const {
     const FrameStatistics& statistics = report.statistics;
     const auto library = [&](const std::string& name) {
         for (std::uint32_t i = 0; i < statistics.passCount; ++i) {
-            if (name == statistics.passes[i].name) report.passes.push_back({name, statistics.passes[i].milliseconds, false});
+            if (name == statistics.passes[i].name)
+                report.passes.push_back({name, statistics.passes[i].milliseconds, false});
         }
     };
     // In order of execution: the library's phases stand between the renderer's own passes.
@@ -320,8 +329,8 @@ HdrPicture Renderer::readPicture() {
 
 std::vector<std::uint32_t> Renderer::readTriangleIds() {
     wait();
-    const std::vector<std::uint8_t> bytes = readImage(state_->device, state_->gbuffer.image(GBuffer::TriangleId),
-                                                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    const std::vector<std::uint8_t> bytes =
+        readImage(state_->device, state_->gbuffer.image(GBuffer::TriangleId), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     std::vector<std::uint32_t> ids(bytes.size() / 4);
     std::memcpy(ids.data(), bytes.data(), ids.size() * 4);
     for (std::uint32_t& id : ids) id = state_->scene.trianglePosition(id);
@@ -335,13 +344,18 @@ std::vector<MemoryUseRow> Renderer::memory() const {
     for (std::uint32_t i = 0; i < library.bufferCount; ++i) {
         rows.push_back({library.buffers[i].name, library.buffers[i].bytes, true});
     }
-    for (const auto& part : {s.scene.memoryRows(), s.gbuffer.memoryRows(), s.atlas.memoryRows(), s.lighting.memoryRows()}) {
+    for (const auto& part :
+         {s.scene.memoryRows(), s.gbuffer.memoryRows(), s.atlas.memoryRows(), s.lighting.memoryRows()}) {
         for (const MemoryRow& row : part) rows.push_back({row.name, row.bytes, false});
     }
     return rows;
 }
 
-const MemoryReport& Renderer::libraryMemory() const { return state_->view->memory(); }
-std::uint32_t Renderer::subgroupSize() const { return state_->context->subgroupSize(); }
+const MemoryReport& Renderer::libraryMemory() const {
+    return state_->view->memory();
+}
+std::uint32_t Renderer::subgroupSize() const {
+    return state_->context->subgroupSize();
+}
 
 }  // namespace gnomon::renderer

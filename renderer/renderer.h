@@ -22,8 +22,8 @@ struct RendererDesc {
     Filter filter = Filter::Pcf;
     std::uint32_t pcfRadius = 1;
     ListReservation listReservation = ListReservation::Accurate;
-    std::uint32_t fixedListEntriesPerTile = 32;  // with ListReservation::Fixed
-    std::uint32_t subgroupSize = 0;              // 0: the device's own
+    std::uint32_t fixedListEntriesPerTile = 32;          // with ListReservation::Fixed
+    std::uint32_t subgroupSize = 0;                      // 0: the device's own
     std::uint32_t listEntries = 0, visibilitySlots = 0;  // pools; 0: the library's defaults
     std::uint32_t atlasSizePx = 0;  // 0: 4096 up to 1920x1080, above 8192; at most what the device has
     DeviceDepth deviceDepth = DeviceDepth::ReversedZ;
@@ -54,7 +54,8 @@ struct FrameReport {
 /// Not thread safe. Throws GpuError (a std::runtime_error with one sentence).
 class Renderer {
 public:
-    /// Uploads the scene; it is copied as far as needed and may go afterwards. Lights must have ranges (completeLights()).
+    /// Uploads the scene; it is copied as far as needed and may go afterwards. Lights must have ranges
+    /// (completeLights()).
     Renderer(const Device& device, const Scene& scene, const RendererDesc& desc);
     ~Renderer();
     Renderer(const Renderer&) = delete;
@@ -68,7 +69,8 @@ public:
     FrameReport report(std::uint64_t frameNumber) const;
     /// Linear picture of the last frame. Waits.
     HdrPicture readPicture();
-    /// Per pixel the triangle's position among all instances' triangles in the scene's order, kNone at background. Waits.
+    /// Per pixel the triangle's position among all instances' triangles in the scene's order, kNone at background.
+    /// Waits.
     std::vector<std::uint32_t> readTriangleIds();
 
     std::vector<MemoryUseRow> memory() const;

@@ -13,18 +13,24 @@ using namespace gpu;
 
 std::uint32_t providerOf(Filter filter) {
     switch (filter) {
-        case Filter::Hard: return kProviderHard;
-        case Filter::Pcf: return kProviderPcf;
-        case Filter::Off: return kProviderOff;
+        case Filter::Hard:
+            return kProviderHard;
+        case Filter::Pcf:
+            return kProviderPcf;
+        case Filter::Off:
+            return kProviderOff;
     }
     return kProviderPcf;
 }
 
 std::uint32_t reservationOf(ListReservation reservation) {
     switch (reservation) {
-        case ListReservation::Approximate: return kReserveApproximate;
-        case ListReservation::Accurate: return kReserveAccurate;
-        case ListReservation::Fixed: return kReserveFixed;
+        case ListReservation::Approximate:
+            return kReserveApproximate;
+        case ListReservation::Accurate:
+            return kReserveAccurate;
+        case ListReservation::Fixed:
+            return kReserveFixed;
     }
     return kReserveApproximate;
 }
@@ -72,13 +78,15 @@ Result chooseSubgroupSize(const ContextDesc& desc, const Functions& vk, std::uin
     }
     const std::uint32_t storageBuffers = properties.properties.limits.maxPerStageDescriptorStorageBuffers;
     if (storageBuffers < kStorageBuffersNeeded) {
-        return Result::failure(Status::UnsupportedDevice, "'%s' allows %u storage buffers per shader stage; %u are needed.",
+        return Result::failure(Status::UnsupportedDevice,
+                               "'%s' allows %u storage buffers per shader stage; %u are needed.",
                                properties.properties.deviceName, storageBuffers, kStorageBuffersNeeded);
     }
     out = desc.subgroupSize != 0 ? desc.subgroupSize : std::min(v11.subgroupSize, kWorkGroupSize);
     require = (v13.requiredSubgroupSizeStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0;
     const bool powerOfTwo = (out & (out - 1)) == 0;
-    if (!powerOfTwo || (!require && out != v11.subgroupSize) || out < v13.minSubgroupSize || out > v13.maxSubgroupSize || out > kWorkGroupSize || out < 4) {
+    if (!powerOfTwo || (!require && out != v11.subgroupSize) || out < v13.minSubgroupSize ||
+        out > v13.maxSubgroupSize || out > kWorkGroupSize || out < 4) {
         return Result::failure(Status::UnsupportedDevice, "'%s' cannot run subgroups of %u lanes: it has %u to %u.",
                                properties.properties.deviceName, out, v13.minSubgroupSize, v13.maxSubgroupSize);
     }
@@ -119,7 +127,8 @@ Result createLayouts(Context::State& state) {
     VkResult result = device.vk.CreateSampler(device.device, &sampler, nullptr, &state.shadowSampler);
     if (result == VK_SUCCESS) result = createLayout(device, lists, kListsBindingCount, state.listsLayout);
     if (result == VK_SUCCESS) result = createLayout(device, receivers, kReceiversBindingCount, state.receiversLayout);
-    if (result == VK_SUCCESS) result = createLayout(device, shadowmaps, kShadowmapsBindingCount, state.shadowmapsLayout);
+    if (result == VK_SUCCESS)
+        result = createLayout(device, shadowmaps, kShadowmapsBindingCount, state.shadowmapsLayout);
     if (result != VK_SUCCESS) return vulkanFailure(result, "Creating descriptor set layouts");
 
     const VkDescriptorSetLayout layouts[] = {state.listsLayout, state.receiversLayout, state.shadowmapsLayout};
@@ -152,8 +161,11 @@ Result createPipeline(Context::State& state, PassId id) {
     VkComputePipelineCreateInfo info = {VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
     info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                   state.requireSubgroupSize ? &required : nullptr,
-                  VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT, VK_SHADER_STAGE_COMPUTE_BIT, shader,
-                  "main", &specialization};
+                  VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT,
+                  VK_SHADER_STAGE_COMPUTE_BIT,
+                  shader,
+                  "main",
+                  &specialization};
     info.layout = state.pipelineLayout;
     result = device.vk.CreateComputePipelines(device.device, state.desc.pipelineCache, 1, &info, nullptr,
                                               &state.pipelines[id]);
@@ -204,23 +216,23 @@ Result Context::create(const ContextDesc& desc, std::unique_ptr<Context>& out) n
     try {
         if (Result checked = checkDesc(desc); !checked) return checked;
         auto state = std::make_unique<State>();
-        if (Result loaded = loadFunctions(desc.getInstanceProcAddr, desc.instance, desc.device, desc.debugLabels,
-                                          state->device.vk);
+        if (Result loaded =
+                loadFunctions(desc.getInstanceProcAddr, desc.instance, desc.device, desc.debugLabels, state->device.vk);
             !loaded) {
             return loaded;
         }
-        if (Result chosen = chooseSubgroupSize(desc, state->device.vk, state->subgroupSize,
-                                               state->requireSubgroupSize);
+        if (Result chosen = chooseSubgroupSize(desc, state->device.vk, state->subgroupSize, state->requireSubgroupSize);
             !chosen) {
             return chosen;
         }
         state->desc = desc;
         readDevice(*state, desc);
         state->desc.queueFamilies = {};  // the caller's memory; copied by readDevice
-        const std::uint32_t values[] = {state->subgroupSize, providerOf(desc.filter), reservationOf(desc.listReservation),
-                                        desc.pcfRadius, desc.hostDepthPyramid ? 1u : 0u};
-        static_assert(kSpecSubgroupSize == 0 && kSpecProvider == 1 && kSpecListReservation == 2 && kSpecPcfRadius == 3 &&
-                      kSpecHostDepthPyramid == 4);
+        const std::uint32_t values[] = {state->subgroupSize, providerOf(desc.filter),
+                                        reservationOf(desc.listReservation), desc.pcfRadius,
+                                        desc.hostDepthPyramid ? 1u : 0u};
+        static_assert(kSpecSubgroupSize == 0 && kSpecProvider == 1 && kSpecListReservation == 2 &&
+                      kSpecPcfRadius == 3 && kSpecHostDepthPyramid == 4);
         std::copy(std::begin(values), std::end(values), state->specialization);
         if (Result made = createLayouts(*state); !made) return made;
         for (std::uint32_t id = 0; id < kPassCount; ++id) {
@@ -234,10 +246,20 @@ Result Context::create(const ContextDesc& desc, std::unique_ptr<Context>& out) n
     }
 }
 
-VkDescriptorSetLayout Context::listsSetLayout() const noexcept { return state_->listsLayout; }
-VkDescriptorSetLayout Context::receiversSetLayout() const noexcept { return state_->receiversLayout; }
-VkDescriptorSetLayout Context::shadowmapsSetLayout() const noexcept { return state_->shadowmapsLayout; }
-std::uint32_t Context::subgroupSize() const noexcept { return state_->subgroupSize; }
-std::span<const std::uint32_t> Context::specializationValues() const noexcept { return state_->specialization; }
+VkDescriptorSetLayout Context::listsSetLayout() const noexcept {
+    return state_->listsLayout;
+}
+VkDescriptorSetLayout Context::receiversSetLayout() const noexcept {
+    return state_->receiversLayout;
+}
+VkDescriptorSetLayout Context::shadowmapsSetLayout() const noexcept {
+    return state_->shadowmapsLayout;
+}
+std::uint32_t Context::subgroupSize() const noexcept {
+    return state_->subgroupSize;
+}
+std::span<const std::uint32_t> Context::specializationValues() const noexcept {
+    return state_->specialization;
+}
 
 }  // namespace gnomon

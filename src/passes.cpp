@@ -61,6 +61,8 @@ constexpr Pass kPasses[kPassCount] = {
 
 }  // namespace
 
-const Pass& passOf(PassId id) noexcept { return kPasses[id]; }
+const Pass& passOf(PassId id) noexcept {
+    return kPasses[id];
+}
 
 }  // namespace gnomon

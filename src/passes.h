@@ -20,7 +20,9 @@ enum PassId : std::uint32_t {
 
 // A set of buffers: bit = binding in the set of the lists.
 using BufferBits = std::uint32_t;
-constexpr BufferBits bufferBit(std::uint32_t binding) { return 1u << binding; }
+constexpr BufferBits bufferBit(std::uint32_t binding) {
+    return 1u << binding;
+}
 
 struct Pass {
     const char* name;  // the shader's file name, the label in a capture, the row in every table

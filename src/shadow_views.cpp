@@ -12,8 +12,8 @@ Result checkView(std::size_t index, const ShadowView& view, std::span<const Shad
     const auto number = static_cast<unsigned>(index);
     for (float value : view.clipFromWorld) {
         if (!std::isfinite(value)) {
-            return Result::failure(Status::BadArgument, "Shadow view %u: clipFromWorld holds a value that is not finite.",
-                                   number);
+            return Result::failure(Status::BadArgument,
+                                   "Shadow view %u: clipFromWorld holds a value that is not finite.", number);
         }
     }
     if (view.atlas >= atlases.size()) {
@@ -25,8 +25,9 @@ Result checkView(std::size_t index, const ShadowView& view, std::span<const Shad
                         view.heightPx <= atlas.heightPx && view.yPx <= atlas.heightPx - view.heightPx &&
                         view.layer < atlas.layers;
     if (!inside) {
-        return Result::failure(Status::BadArgument, "Shadow view %u lies outside its atlas of %ux%u pixels and %u layers.",
-                               number, atlas.widthPx, atlas.heightPx, atlas.layers);
+        return Result::failure(Status::BadArgument,
+                               "Shadow view %u lies outside its atlas of %ux%u pixels and %u layers.", number,
+                               atlas.widthPx, atlas.heightPx, atlas.layers);
     }
     if (view.widthPx < gpu::kMinShadowViewSizePx || view.heightPx < gpu::kMinShadowViewSizePx) {
         return Result::failure(Status::BadArgument, "Shadow view %u has %ux%u pixels; it needs at least %u each way.",
@@ -35,8 +36,8 @@ Result checkView(std::size_t index, const ShadowView& view, std::span<const Shad
     const bool nearOk = std::isfinite(view.nearMetres) && (view.orthographic || view.nearMetres > 0.0f);
     const bool farOk = view.farMetres > view.nearMetres && (std::isfinite(view.farMetres) || !view.orthographic);
     if (!nearOk || !farOk) {
-        return Result::failure(Status::BadArgument, "Shadow view %u needs 0 < near < far (and a finite far plane if orthographic).",
-                               number);
+        return Result::failure(Status::BadArgument,
+                               "Shadow view %u needs 0 < near < far (and a finite far plane if orthographic).", number);
     }
     return {};
 }
@@ -60,7 +61,9 @@ void depthCoefficients(const ShadowView& view, double& a, double& b) {
 }
 
 // Length of a row of the matrix' upper 3x3, in NDC per metre (at linear depth 1 if perspective).
-double rowLength(const float* m, int row) { return std::hypot(double(m[row]), double(m[row + 4]), double(m[row + 8])); }
+double rowLength(const float* m, int row) {
+    return std::hypot(double(m[row]), double(m[row + 4]), double(m[row + 8]));
+}
 
 gpu::GpuShadowView convert(const ShadowView& view, const ShadowAtlas& atlas) {
     gpu::GpuShadowView v = {};

@@ -35,7 +35,8 @@ constexpr BufferDecl kBuffers[kListsBindingCount] = {
 constexpr VkDeviceSize kReadbackBytes = sizeof(GpuCounters) + sizeof(GpuEvaluateHead);
 
 Result checkDesc(const ViewDesc& desc) {
-    if (desc.maxWidthPx == 0 || desc.maxHeightPx == 0 || desc.maxWidthPx > kMaxExtentPx || desc.maxHeightPx > kMaxExtentPx) {
+    if (desc.maxWidthPx == 0 || desc.maxHeightPx == 0 || desc.maxWidthPx > kMaxExtentPx ||
+        desc.maxHeightPx > kMaxExtentPx) {
         return Result::failure(Status::BadArgument, "A view of %ux%u pixels was asked for; 1x1 to %ux%u are possible.",
                                desc.maxWidthPx, desc.maxHeightPx, kMaxExtentPx, kMaxExtentPx);
     }
@@ -67,8 +68,8 @@ ViewSizes sizesOf(const DeviceContext& device, const ViewDesc& desc) {
     const std::uint64_t wantedSlots =
         desc.visibilitySlots != 0 ? desc.visibilitySlots : tiles * kDefaultVisibilitySlotsPerTile;
     const std::uint64_t entries = std::min<std::uint64_t>({wantedEntries, largest / 4, 0x7FFFFFFFu});
-    const std::uint64_t slots = std::min<std::uint64_t>({wantedSlots, largest / (kVisibilitySlotWords * 4),
-                                                         kMaxVisibilitySlots});
+    const std::uint64_t slots =
+        std::min<std::uint64_t>({wantedSlots, largest / (kVisibilitySlotWords * 4), kMaxVisibilitySlots});
     s.poolsCapped = entries < wantedEntries || slots < wantedSlots;
     // Whole early-list words: what is left of a pool of one or two entries cannot hold a list.
     s.listEntries = static_cast<std::uint32_t>(entries / kEarlyIndicesPerWord * kEarlyIndicesPerWord);
@@ -116,9 +117,10 @@ Result createBuffers(View::State& state) {
     for (const BufferDecl& decl : kBuffers) {
         const VkDeviceSize bytes = state.sizes.bytes[decl.binding];
         if (!decl.perFrame) {
-            const VkBufferUsageFlags indirect = decl.binding == kBindEvaluateTiles ? VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT : 0;
-            if (Result made = createBuffer(device, decl.name, bytes + 2 * state.desc.guardBytes, kDeviceUsage | indirect,
-                                           MemoryUse::Device, state.device[decl.binding]);
+            const VkBufferUsageFlags indirect =
+                decl.binding == kBindEvaluateTiles ? VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT : 0;
+            if (Result made = createBuffer(device, decl.name, bytes + 2 * state.desc.guardBytes,
+                                           kDeviceUsage | indirect, MemoryUse::Device, state.device[decl.binding]);
                 !made) {
                 return made;
             }
@@ -199,25 +201,41 @@ void writeListsSets(View::State& state) {
             infos[b].buffer = decl.perFrame ? slot.streamed[b].buffer : state.device[b].buffer;
             infos[b].offset = decl.perFrame ? 0 : state.desc.guardBytes;
             infos[b].range = state.sizes.bytes[b];
-            writes[b] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, slot.lists, b, 0, 1,
+            writes[b] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                         nullptr,
+                         slot.lists,
+                         b,
+                         0,
+                         1,
                          b == kBindFrame ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                         nullptr, &infos[b], nullptr};
+                         nullptr,
+                         &infos[b],
+                         nullptr};
         }
         infos[kListsBindingCount] = {slot.shadowViews.buffer, 0, VK_WHOLE_SIZE};
-        writes[kListsBindingCount] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, slot.shadowmaps, kBindShadowViews,
-                                      0, 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, nullptr, &infos[kListsBindingCount], nullptr};
+        writes[kListsBindingCount] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                      nullptr,
+                                      slot.shadowmaps,
+                                      kBindShadowViews,
+                                      0,
+                                      1,
+                                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                      nullptr,
+                                      &infos[kListsBindingCount],
+                                      nullptr};
         device.vk.UpdateDescriptorSets(device.device, kListsBindingCount + 1, writes, 0, nullptr);
     }
 }
 
-// Points the image bindings at the frame's images. Every frame anew: a host that destroys an image view and makes another
-// may get the same handle back, so equal handles prove nothing.
+// Points the image bindings at the frame's images. Every frame anew: a host that destroys an image view and makes
+// another may get the same handle back, so equal handles prove nothing.
 void writeImages(const DeviceContext& device, VkDescriptorSet set, std::uint32_t firstBinding,
                  std::span<const VkImageView> views) {
     for (std::uint32_t i = 0; i < views.size(); ++i) {
         const VkDescriptorImageInfo info = {VK_NULL_HANDLE, views[i], VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-        const VkWriteDescriptorSet write = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, set, firstBinding + i, 0, 1,
-                                            VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, &info, nullptr, nullptr};
+        const VkWriteDescriptorSet write = {
+            VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, set,     firstBinding + i, 0, 1,
+            VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,       &info,   nullptr, nullptr};
         device.vk.UpdateDescriptorSets(device.device, 1, &write, 0, nullptr);
     }
 }
@@ -239,7 +257,8 @@ void bindImages(View::State& state, FrameSlot& slot, const FrameDesc& frame) {
 Result checkFrame(const View::State& state, const FrameDesc& frame) {
     if (frame.depth.view == VK_NULL_HANDLE) return Result::failure(Status::BadArgument, "FrameDesc::depth is missing.");
     if (state.context->desc.hostDepthPyramid && frame.depthPyramid.view == VK_NULL_HANDLE) {
-        return Result::failure(Status::BadArgument, "ContextDesc::hostDepthPyramid is set, but FrameDesc::depthPyramid is missing.");
+        return Result::failure(Status::BadArgument,
+                               "ContextDesc::hostDepthPyramid is set, but FrameDesc::depthPyramid is missing.");
     }
     if (frame.atlases.size() > kMaxShadowAtlases) {
         return Result::failure(Status::BadArgument, "%u shadow atlases were given; %u are possible.",
@@ -329,7 +348,9 @@ Result View::create(const Context& context, const ViewDesc& desc, std::unique_pt
     }
 }
 
-const MemoryReport& View::memory() const noexcept { return state_->memory; }
+const MemoryReport& View::memory() const noexcept {
+    return state_->memory;
+}
 
 Result View::beginFrame(const FrameDesc& frame, PrepareReport* report) noexcept {
     State& state = *state_;
@@ -348,8 +369,8 @@ Result View::beginFrame(const FrameDesc& frame, PrepareReport* report) noexcept 
     if (Result prepared = state.prepare->run(input, output, slot.lights); !prepared) return prepared;
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
     slot.prepareMilliseconds = elapsed.count();
-    if (Result converted = convertShadowViews(frame.shadowViews, frame.atlases,
-                                              static_cast<GpuShadowView*>(slot.shadowViews.mapped));
+    if (Result converted =
+            convertShadowViews(frame.shadowViews, frame.atlases, static_cast<GpuShadowView*>(slot.shadowViews.mapped));
         !converted) {
         return converted;
     }
@@ -364,12 +385,24 @@ Result View::beginFrame(const FrameDesc& frame, PrepareReport* report) noexcept 
     return {};
 }
 
-VkDescriptorSet View::listsSet() const noexcept { return state_->slots[state_->current].lists; }
-VkDescriptorSet View::receiversSet() const noexcept { return state_->slots[state_->current].receivers; }
-VkDescriptorSet View::shadowmapsSet() const noexcept { return state_->slots[state_->current].shadowmaps; }
-VkExtent2D View::tileCounts() const noexcept { return {state_->frame.tileCounts.x, state_->frame.tileCounts.y}; }
-VkBuffer View::evaluateTilesBuffer() const noexcept { return state_->device[kBindEvaluateTiles].buffer; }
-VkDeviceSize View::evaluateCommandOffset() const noexcept { return state_->desc.guardBytes; }
+VkDescriptorSet View::listsSet() const noexcept {
+    return state_->slots[state_->current].lists;
+}
+VkDescriptorSet View::receiversSet() const noexcept {
+    return state_->slots[state_->current].receivers;
+}
+VkDescriptorSet View::shadowmapsSet() const noexcept {
+    return state_->slots[state_->current].shadowmaps;
+}
+VkExtent2D View::tileCounts() const noexcept {
+    return {state_->frame.tileCounts.x, state_->frame.tileCounts.y};
+}
+VkBuffer View::evaluateTilesBuffer() const noexcept {
+    return state_->device[kBindEvaluateTiles].buffer;
+}
+VkDeviceSize View::evaluateCommandOffset() const noexcept {
+    return state_->desc.guardBytes;
+}
 
 VkBuffer View::buffer(const char* name) const noexcept {
     for (const BufferDecl& decl : kBuffers) {

@@ -29,7 +29,7 @@ struct ViewSizes {
 // Images and buffers of one frame in flight.
 struct FrameSlot {
     std::uint64_t frameNumber = ~0ull;
-    bool ended = false;  // recordEndFrame() was called
+    bool ended = false;                              // recordEndFrame() was called
     DeviceBuffer streamed[gpu::kListsBindingCount];  // those that are per frame, by binding
     DeviceBuffer shadowViews;
     DeviceBuffer readback;  // GpuCounters, GpuEvaluateHead
@@ -49,7 +49,7 @@ struct View::State {
     MemoryReport memory;
     std::unique_ptr<Prepare> prepare;
     DeviceBuffer device[gpu::kListsBindingCount];  // those that are not per frame, by binding
-    DeviceImage noFaceNormals;  // stand in for what the host does not have
+    DeviceImage noFaceNormals;                     // stand in for what the host does not have
     DeviceImage noAtlas;
     bool placeholdersReady = false;
     VkDescriptorPool descriptors = VK_NULL_HANDLE;

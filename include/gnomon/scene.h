@@ -19,7 +19,8 @@ enum class DeviceDepth : std::uint8_t {
 };
 
 /// A camera. Perspective or orthographic, finite or infinite far plane, off-centre and jittered projections are fine;
-/// sheared and mirrored ones, oblique near planes and orthographic near planes behind the eye are refused. Pixels whose device depth is exactly the far value are background.
+/// sheared and mirrored ones, oblique near planes and orthographic near planes behind the eye are refused. Pixels whose
+/// device depth is exactly the far value are background.
 struct Camera {
     /// Rigid: a rotation and a translation, nothing else (checked to 1e-3).
     float viewFromWorld[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -42,8 +43,8 @@ struct Light {
     /// Metres; the light has no influence beyond. 0: derived from `intensity` as the distance at which an unshadowed
     /// surface facing the light receives PrepareDesc::rangeCutoffLux. Ignored for directional lights.
     float rangeMetres = 0.0f;
-    /// Candela (lux for directional lights); 0: the light is off. Else used for a missing range and for the choice among
-    /// too many lights only: what the host's shader makes of the light is its own business. At least 0.
+    /// Candela (lux for directional lights); 0: the light is off. Else used for a missing range and for the choice
+    /// among too many lights only: what the host's shader makes of the light is its own business. At least 0.
     float intensity = 1.0f;
     /// Spot: half-angle of the cone in radians, above 0 and below pi/2 (checked: at most 1.55).
     float outerConeAngle = 0.785398163f;
@@ -60,8 +61,8 @@ struct Light {
     float biasMetres = 0.002f;
     /// Multiplies the light's importance where more than 1024 lights compete.
     float priority = 1.0f;
-    /// Index of the light's first ShadowView (point lights: of six in a row, +X -X +Y -Y +Z -Z), or kNoShadowViews for a
-    /// light that casts no shadow. Ignored for directional lights, which cast none yet.
+    /// Index of the light's first ShadowView (point lights: of six in a row, +X -X +Y -Y +Z -Z), or kNoShadowViews for
+    /// a light that casts no shadow. Ignored for directional lights, which cast none yet.
     std::uint32_t firstShadowView = kNoShadowViews;
 };
 
@@ -72,7 +73,7 @@ struct ShadowView {
     float clipFromWorld[16] = {};
     std::uint32_t atlas = 0;  ///< 0 to 3
     std::uint32_t layer = 0;
-    std::uint32_t xPx = 0, yPx = 0;          ///< first pixel of the rectangle
+    std::uint32_t xPx = 0, yPx = 0;           ///< first pixel of the rectangle
     std::uint32_t widthPx = 0, heightPx = 0;  ///< at least 8 each
     float nearMetres = 0.05f;
     float farMetres = std::numeric_limits<float>::infinity();  ///< infinity allowed for perspective views
@@ -83,7 +84,7 @@ struct ShadowView {
 /// What phase 1 needs of one frame and view.
 struct ViewInput {
     Camera camera;
-    std::uint32_t widthPx = 0, heightPx = 0;          ///< active extent, at least 1x1
+    std::uint32_t widthPx = 0, heightPx = 0;         ///< active extent, at least 1x1
     std::uint32_t viewportXPx = 0, viewportYPx = 0;  ///< where it begins in the host's images
     std::span<const Light> lights;
     std::uint32_t shadowViewCount = 0;  ///< lights may refer to views below this

@@ -42,8 +42,8 @@ enum class ListReservation : std::uint8_t {
 };
 
 /// The device, and the variant of the pipelines. Needs Vulkan 1.3 with synchronization2, and computeFullSubgroups and
-/// subgroupSizeControl enabled; subgroup operations (basic, arithmetic) in compute shaders; 15 storage buffers per stage;
-/// for debugLabels VK_EXT_debug_utils on the instance.
+/// subgroupSizeControl enabled; subgroup operations (basic, arithmetic) in compute shaders; 15 storage buffers per
+/// stage; for debugLabels VK_EXT_debug_utils on the instance.
 struct ContextDesc {
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
@@ -103,7 +103,7 @@ struct ViewDesc {
     /// Testing: bytes that are left free before and after the contents of every device buffer, and are never written.
     /// A multiple of 256; buffer() then returns buffers whose contents begin at this offset.
     std::uint32_t guardBytes = 0;
-    PrepareDesc prepare;     ///< its extent is set from this one
+    PrepareDesc prepare;  ///< its extent is set from this one
 };
 
 struct BufferMemory {
@@ -117,8 +117,8 @@ struct MemoryReport {
     static constexpr std::uint32_t kMaxBuffers = 24;
     BufferMemory buffers[kMaxBuffers];
     std::uint32_t bufferCount = 0;
-    std::uint64_t totalBytes = 0;  ///< with all copies
-    std::uint32_t listEntries = 0;      ///< capacities after capping
+    std::uint64_t totalBytes = 0;   ///< with all copies
+    std::uint32_t listEntries = 0;  ///< capacities after capping
     std::uint32_t visibilitySlots = 0;
     bool poolsCapped = false;  ///< a pool is smaller than asked for
 };
@@ -141,11 +141,12 @@ struct FrameDesc {
     std::uint64_t frameNumber = 0;
     ViewInput view;
     std::span<const ShadowView> shadowViews;
-    HostImage depth;          ///< D32, D24 or D16 aspect view, 2D
-    HostImage faceNormals;    ///< optional: R16G16_UINT, octahedral, the side the camera sees (src/shading/octahedral.glsl)
+    HostImage depth;  ///< D32, D24 or D16 aspect view, 2D
+    HostImage
+        faceNormals;  ///< optional: R16G16_UINT, octahedral, the side the camera sees (src/shading/octahedral.glsl)
     HostImage receiverFlags;  ///< optional: R8G8_UINT: receiver mask; bit 0: subsurface
-    /// With ContextDesc::hostDepthPyramid: R32G32_SFLOAT, min and max device depth per tile; texel (0, 0) is the first tile
-    /// of the active viewport.
+    /// With ContextDesc::hostDepthPyramid: R32G32_SFLOAT, min and max device depth per tile; texel (0, 0) is the first
+    /// tile of the active viewport.
     HostImage depthPyramid;
     std::span<const ShadowAtlas> atlases;  ///< up to 4
     float subsurfaceBiasMetres = 0.02f;
@@ -197,11 +198,12 @@ public:
 
     // Each records one pass with its barriers, debug label and timestamps. Before and after, the library's buffers need
     // no barrier by the host as long as everything runs on one queue. Across queues a semaphore is enough; since the
-    // lists exist once per view, the next frame's recordHierarchicalDepth() must wait for this frame's recordEndFrame().
+    // lists exist once per view, the next frame's recordHierarchicalDepth() must wait for this frame's
+    // recordEndFrame().
     void recordHierarchicalDepth(VkCommandBuffer commands) noexcept;
     void recordFindLightsApproximate(VkCommandBuffer commands) noexcept;
-    /// Afterwards the early lists are visible to all shaders. A host that evaluates every shadow while lighting may leave
-    /// out phase 4.
+    /// Afterwards the early lists are visible to all shaders. A host that evaluates every shadow while lighting may
+    /// leave out phase 4.
     void recordFindLightsAccurate(VkCommandBuffer commands) noexcept;
     /// Afterwards the final lists, the visibility and the indirect command are visible to all shaders and to indirect
     /// dispatch.

@@ -46,12 +46,12 @@ Lighting::Lighting(const Device& device, const Context& context, const Scene& sc
                    bool quantiseInline)
     : device_(device) {
     const VkExtent2D extent = gbuffer.extent();
-    picture_ = GpuImage(device, {.name = "picture",
-                                 .format = VK_FORMAT_R16G16B16A16_SFLOAT,
-                                 .width = extent.width,
-                                 .height = extent.height,
-                                 .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                                          VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    picture_ = GpuImage(
+        device, {.name = "picture",
+                 .format = VK_FORMAT_R16G16B16A16_SFLOAT,
+                 .width = extent.width,
+                 .height = extent.height,
+                 .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
     std::vector<HostLight> lights(std::max<std::size_t>(scene.lights.size(), 1));
     std::transform(scene.lights.begin(), scene.lights.end(), lights.begin(), hostLightOf);
     hostLights_ = Buffer(device, "host_lights", lights.size() * sizeof(HostLight),
@@ -88,13 +88,19 @@ Lighting::Lighting(const Device& device, const Context& context, const Scene& sc
 
 void Lighting::createSet(const GBuffer& gbuffer) {
     constexpr VkDescriptorType kSampled = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-    const VkDescriptorType types[] = {kSampled, kSampled, kSampled, kSampled, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER};
+    const VkDescriptorType types[] = {kSampled,
+                                      kSampled,
+                                      kSampled,
+                                      kSampled,
+                                      VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                      VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER};
     ownLayout_ = makeSetLayout(device_, types, VK_SHADER_STAGE_COMPUTE_BIT);
     emptyLayout_ = makeSetLayout(device_, {}, VK_SHADER_STAGE_COMPUTE_BIT);
     pool_ = makeDescriptorPool(device_, 1, types);
     ownSet_ = allocateSet(device_, pool_, ownLayout_);
-    const GBuffer::Channel channels[] = {GBuffer::BaseColour, GBuffer::Normal, GBuffer::MaterialData, GBuffer::Emissive};
+    const GBuffer::Channel channels[] = {GBuffer::BaseColour, GBuffer::Normal, GBuffer::MaterialData,
+                                         GBuffer::Emissive};
     for (std::uint32_t i = 0; i < std::size(channels); ++i) {
         writeImage(device_, ownSet_, i, kSampled, gbuffer.view(channels[i]), VK_NULL_HANDLE);
     }

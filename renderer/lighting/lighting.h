@@ -37,7 +37,8 @@ public:
 private:
     void createSet(const GBuffer& gbuffer);
     void beginPicture(VkCommandBuffer commands);
-    void bind(VkCommandBuffer commands, const View& view, VkPipeline pipeline, VkPipelineLayout layout, bool shadowmaps);
+    void bind(VkCommandBuffer commands, const View& view, VkPipeline pipeline, VkPipelineLayout layout,
+              bool shadowmaps);
 
     const Device& device_;
     GpuImage picture_;

@@ -60,7 +60,8 @@ ShadowPoint shadowPointOf(GpuLight light, Receiver receiver, vec3 toLight, float
     precise float slack = deviceDepthSlack(view, depth);
     precise float biased = s.reversedZ ? depth + slack : depth - slack;
     s.depth = biased;
-    precise vec2 px = clip.xy / clip.w * view.pxFromNdcScale + view.pxFromNdcOffset;
+    precise float inverseW = 1.0 / clip.w;
+    precise vec2 px = clip.xy * inverseW * view.pxFromNdcScale + view.pxFromNdcOffset;
     float border = filterRadius > 0.0 ? filterRadius + 1.0 : 0.5;
     s.px = clamp(px, view.rectMinPx + border, view.rectMaxPx - border);
     s.atlas = view.atlasAndLayer & 0xFFu;

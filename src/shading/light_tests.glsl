@@ -8,7 +8,7 @@
 uint lightType(GpuLight light) { return light.typeAndFlags & kLightTypeMask; }
 bool lightCasts(GpuLight light) { return (light.typeAndFlags & kLightCastsBit) != 0u; }
 
-// Range, cone and mask. `toLight` is the unit direction from the point to the light.
+// Range, cone and mask. `toLight` is the unit direction from the point to the light (0 right at the light).
 bool lightReaches(GpuLight light, vec3 positionWs, uint receiverMask, out vec3 toLight) {
     toLight = -light.directionWs;
     if ((light.lightMask & receiverMask) == 0u) return false;
@@ -17,11 +17,12 @@ bool lightReaches(GpuLight light, vec3 positionWs, uint receiverMask, out vec3 t
     precise float squared = dot(d, d);
     precise float range = light.rangeMetres * light.rangeMetres;
     if (squared > range) return false;
-    precise float distance = sqrt(squared);
-    precise vec3 unit = distance > 0.0 ? d / distance : vec3(0.0, 1.0, 0.0);
+    precise float inverse = inversesqrt(max(squared, 1e-30));  // one step where a division each costs dozens
+    precise vec3 unit = d * inverse;
     toLight = unit;
+    if (lightType(light) == kLightPoint) return true;
     precise float along = -dot(d, light.directionWs);
-    precise float limit = light.cosOuter * distance;
+    precise float limit = light.cosOuter * (squared * inverse);
     return along >= limit;
 }
 

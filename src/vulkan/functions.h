@@ -8,9 +8,9 @@
 
 namespace gnomon {
 
-#define GNOMON_INSTANCE_FUNCTIONS(X)      \
-    X(GetPhysicalDeviceProperties2)       \
-    X(GetPhysicalDeviceMemoryProperties)  \
+#define GNOMON_INSTANCE_FUNCTIONS(X)          \
+    X(GetPhysicalDeviceProperties2)           \
+    X(GetPhysicalDeviceMemoryProperties)      \
     X(GetPhysicalDeviceQueueFamilyProperties) \
     X(GetDeviceProcAddr)
 

@@ -13,11 +13,15 @@ std::uint32_t findType(const VkPhysicalDeviceMemoryProperties& memory, std::uint
     return kNoType;
 }
 
-std::uint32_t chooseType(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t allowed, MemoryUse use) noexcept {
-    constexpr VkMemoryPropertyFlags kMapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+std::uint32_t chooseType(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
+                         MemoryUse use) noexcept {
+    constexpr VkMemoryPropertyFlags kMapped =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     std::uint32_t type = kNoType;
     switch (use) {
-        case MemoryUse::Device: type = findType(memory, allowed, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT); break;
+        case MemoryUse::Device:
+            type = findType(memory, allowed, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+            break;
         case MemoryUse::Streamed:
             type = findType(memory, allowed, kMapped | VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
             if (type == kNoType) type = findType(memory, allowed, kMapped);
@@ -58,7 +62,8 @@ Result vulkanFailure(VkResult result, const char* call) noexcept {
         case VK_ERROR_OUT_OF_HOST_MEMORY:
         case VK_ERROR_OUT_OF_DEVICE_MEMORY:
             return Result::failure(Status::OutOfMemory, "%s ran out of memory.", call);
-        default: return Result::failure(Status::VulkanError, "%s failed with VkResult %d.", call, static_cast<int>(result));
+        default:
+            return Result::failure(Status::VulkanError, "%s failed with VkResult %d.", call, static_cast<int>(result));
     }
 }
 

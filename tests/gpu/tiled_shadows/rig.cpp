@@ -262,7 +262,8 @@ void Rig::decode(FrameResult& r) const {
     std::memcpy(&r.constants, contents("frame_constants").data(), sizeof(r.constants));
     std::memcpy(&r.counters, contents("counters").data(), sizeof(r.counters));
     r.lights.resize(r.constants.lightCounts.x);
-    std::memcpy(static_cast<void*>(r.lights.data()), contents("lights").data(), r.lights.size() * sizeof(gpu::GpuLight));
+    if (!r.lights.empty())
+        std::memcpy(static_cast<void*>(r.lights.data()), contents("lights").data(), r.lights.size() * sizeof(gpu::GpuLight));
     const std::size_t tiles = std::size_t(r.tilesX()) * r.tilesY();
     const auto perTile = [&](const char* name, std::size_t words) {
         std::vector<std::uint32_t> all = contents(name);

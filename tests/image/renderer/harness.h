@@ -19,6 +19,8 @@ namespace gnomon::renderer::image_test {
 bool fullRun();
 /// True in a build with AddressSanitizer.
 bool sanitized();
+/// False where a handful of cases must do: in a build with sanitizers that is no full run.
+inline bool thorough() { return fullRun() || !sanitized(); }
 
 /// One test per suitable Vulkan device; fails on any validation message.
 class ImageTest : public ::testing::TestWithParam<std::size_t> {

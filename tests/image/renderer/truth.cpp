@@ -11,6 +11,7 @@ namespace gnomon::renderer::image_test {
 namespace {
 
 constexpr std::uint32_t kLeafTriangles = 4;
+constexpr std::uint32_t kMostOpen = 64;  // halving 2^32 triangles down to one opens 33 at most
 
 // Möller and Trumbore 1997.
 std::optional<glm::dvec3> distanceAndBarycentrics(const Triangles::Triangle& t, const glm::dvec3& origin,
@@ -117,14 +118,13 @@ void Triangles::split(std::uint32_t index) {
 // Calls visit(triangle index, distance in lengths of `direction`) until it returns true.
 template <class Visit>
 void Triangles::walk(const glm::dvec3& origin, const glm::dvec3& direction, const double& reach, Visit visit) const {
-    std::vector<std::uint32_t> open = {0};
-    while (!open.empty()) {
-        const Node& node = nodes_[open.back()];
-        open.pop_back();
+    std::uint32_t open[kMostOpen] = {0}, count = 1;
+    while (count > 0) {
+        const Node& node = nodes_[open[--count]];
         if (!meetsBox(node.min, node.max, origin, direction, reach)) continue;
         if (node.count == 0) {
-            open.push_back(node.first);
-            open.push_back(node.first + 1);
+            open[count++] = node.first;
+            open[count++] = node.first + 1;
         }
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
             const auto hit = distanceAndBarycentrics(triangles_[i], origin, direction);

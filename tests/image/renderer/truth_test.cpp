@@ -14,13 +14,13 @@ namespace {
 
 GNOMON_IMAGE_TEST_SUITE(RayTruth);
 
-// The depth bias is simple as yet, so the bounds say "hardly any" and not "none": over all scenes, and for one light
-// kMostOfOne, or a few pixels where hardly any are dark. Measured with lavapipe: acne 0.004 %, leak 0.10 %.
+// The bounds say "hardly any" and not "none": over all scenes, and for one light kMostOfOne, or a few pixels where hardly
+// any are dark. Measured: acne 0.002 to 0.005 %, leak 0.04 to 0.14 % (lavapipe, SwiftShader, H100).
 constexpr double kMostAcne = 0.0005, kMostLeak = 0.003, kMostOfOne = 0.02;
 constexpr std::uint64_t kFewPixels = 16;
-// Partly dark where all should be lit. Nearly none for hard shadows. PCF is under-biased at its kernel's corners, which
-// is known (up to 8 % here, lavapipe); the bound notices if that gets worse.
-constexpr double kMostLitOffHard = 0.001, kMostLitOffPcf = 0.12;
+// Partly dark where all should be lit: what a bias shows that is too small at the corners of a kernel. Measured: hard
+// 0.004 %, PCF 0.024 % (7.5 % with an offset by the sine of the angle to the light alone).
+constexpr double kMostLitOff = 0.002;
 constexpr std::uint32_t kWidthPx = 240, kHeightPx = 135;
 
 struct FilterCase {
@@ -144,7 +144,7 @@ Figures checkLight(const Device& device, const View3d& view, const FilterCase& f
     const HdrPicture none = drawOnce(device, night, desc, ShadowMode::Off).linear;
     const Figures f = count(truth, all, arrived, none);
     f.print(device, name);
-    EXPECT_GT(f.lit + f.dark, 500u) << "hardly a pixel was counted";
+    EXPECT_GT(f.lit + f.dark, 300u) << "hardly a pixel was counted";
     const bool acne = f.acne > kFewPixels && f.acneShare() > kMostOfOne;
     const bool leak = f.leak > kFewPixels && f.leakShare() > kMostOfOne;
     EXPECT_FALSE(acne) << f.acne;
@@ -157,17 +157,23 @@ Figures checkLight(const Device& device, const View3d& view, const FilterCase& f
 }
 
 TEST_P(RayTruth, ShadowsStandWhereTheyBelong) {
-    const std::pair<const char*, std::size_t> lights[] = {
-        {"empty-plane", 0}, {"sphere-on-plane", 0}, {"boxes", 0}, {"boxes", 1}, {"boxes", 2},       {"columns", 3},
-        {"columns", 5},     {"cloth", 0},           {"cloth", 1}, {"masked", 0}, {"masked", 1}, {"single-triangle", 0}};
+    struct {
+        const char* scene;
+        std::size_t light;
+        bool always;
+    } const lights[] = {{"empty-plane", 0, false}, {"sphere-on-plane", 0, true}, {"boxes", 0, false},
+                        {"boxes", 1, true},        {"boxes", 2, false},          {"columns", 3, false},
+                        {"columns", 5, true},      {"cloth", 0, true},           {"cloth", 1, false},
+                        {"masked", 0, true},       {"masked", 1, false},         {"single-triangle", 0, false}};
     for (const FilterCase& filter : kFilters) {
         Figures sum;
-        for (const auto& [scene, light] : lights) sum.add(checkLight(device(), withLightAlone(scene, light), filter));
+        for (const auto& [scene, light, always] : lights)
+            if (always || thorough()) sum.add(checkLight(device(), withLightAlone(scene, light), filter));
         sum.print(device(), std::string("all scenes, ") + filter.name);
         EXPECT_GT(sum.dark, 1000u) << "too little shadow to speak of";
         EXPECT_LE(sum.acneShare(), kMostAcne);
         EXPECT_LE(sum.leakShare(), kMostLeak);
-        EXPECT_LE(Figures::share(sum.litOff, sum.lit), filter.filter == Filter::Hard ? kMostLitOffHard : kMostLitOffPcf);
+        EXPECT_LE(Figures::share(sum.litOff, sum.lit), kMostLitOff);
         RecordProperty(std::string(filter.name) + "_acne", std::to_string(sum.acneShare()));
         RecordProperty(std::string(filter.name) + "_leak", std::to_string(sum.leakShare()));
     }

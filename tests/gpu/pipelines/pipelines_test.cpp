@@ -34,20 +34,20 @@ std::unique_ptr<VulkanInstance> makeInstance(const InstanceDesc& desc) {
 
 class PipelinesTest : public ::testing::Test {
 protected:
-    // Null, with a printed reason, where no instance can be made.
-    static VulkanInstance* instance() {
-        static const std::unique_ptr<VulkanInstance> shared = [] {
-            for (const bool validation : {true, false}) {
-                try {
-                    return makeInstance({.validation = validation});
-                } catch (const GpuError& error) {
-                    std::printf("skipped%s: %s\n", validation ? " validation" : "", error.what());
-                }
+    // Made once, and gone before the process ends: some drivers unload themselves before static objects are destroyed.
+    static void SetUpTestSuite() {
+        for (const bool validation : {true, false}) {
+            try {
+                shared_ = makeInstance({.validation = validation});
+                return;
+            } catch (const GpuError& error) {
+                std::printf("skipped%s: %s\n", validation ? " validation" : "", error.what());
             }
-            return std::unique_ptr<VulkanInstance>();
-        }();
-        return shared.get();
+        }
     }
+    static void TearDownTestSuite() { shared_.reset(); }
+    // Null, with a printed reason, where no instance can be made.
+    static VulkanInstance* instance() { return shared_.get(); }
 
     void SetUp() override {
         if (instance() == nullptr) GTEST_SKIP() << "skipped: no Vulkan instance";
@@ -68,7 +68,9 @@ protected:
     }
 
     std::vector<DeviceInfo> devices_;
+    static std::unique_ptr<VulkanInstance> shared_;
 };
+std::unique_ptr<VulkanInstance> PipelinesTest::shared_;
 
 ContextDesc descOf(const Device& device, const std::uint32_t& family) {
     ContextDesc desc;

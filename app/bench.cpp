@@ -9,6 +9,7 @@
 #include "app/bench_report.h"
 #include "app/commands.h"
 #include "app/errors.h"
+#include "app/outputs.h"
 #include "app/progress.h"
 #include "app/session.h"
 #include "renderer/picture/picture.h"
@@ -81,7 +82,7 @@ int bench(const BenchOptions& options) {
         shadowModeOf(name);
         if (!names.insert(name).second) throw UsageError(fmt::format("--variants names '{}' twice.", name));
     }
-    if (!options.json.empty()) renderer::checkWritable(options.json);
+    checkOutputs({&options.json, 1}, {&options.settings.scene, 1});
     const renderer::VulkanInstance instance(instanceDescOf(options.settings));
     benchWithin(instance, options);
     return exitCodeOf(instance, options.settings);
@@ -102,7 +103,7 @@ void addBenchCommand(CLI::App& app, Work& chosen) {
     command->add_option("--variants", options->variants, "Some of deferred,inline,off")
         ->delimiter(',')
         ->capture_default_str();
-    command->add_option("--json", options->json, "Write the measurement to a file");
+    command->add_option("--json", options->json, "Write the measurement to a file")->check(fileName());
     command->callback([&chosen, options] { chosen = [options] { return bench(*options); }; });
 }
 

@@ -5,6 +5,7 @@
 
 #include "app/commands.h"
 #include "app/errors.h"
+#include "app/outputs.h"
 #include "renderer/picture/picture.h"
 
 namespace gnomon::app {
@@ -24,7 +25,8 @@ renderer::Picture readInput(const std::string& file) {
 }
 
 int compareFiles(const CompareOptions& options) {
-    if (!options.difference.empty()) renderer::checkWritable(options.difference);
+    const std::string inputs[] = {options.a, options.b};
+    checkOutputs({&options.difference, 1}, inputs);
     const renderer::Picture a = readInput(options.a), b = readInput(options.b);
     if (a.width != b.width || a.height != b.height)
         throw UsageError(
@@ -46,7 +48,7 @@ void addCompareCommand(CLI::App& app, Work& chosen) {
     const auto options = std::make_shared<CompareOptions>();
     command->add_option("a", options->a, "A PNG file")->required();
     command->add_option("b", options->b, "A PNG file")->required();
-    command->add_option("--diff", options->difference, "Write a picture of the differences");
+    command->add_option("--diff", options->difference, "Write a picture of the differences")->check(fileName());
     command->add_option("--tolerance", options->tolerance, "Largest difference of a channel that passes")
         ->check(CLI::Range(0, 255))
         ->capture_default_str();

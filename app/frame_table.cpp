@@ -23,11 +23,11 @@ void printPasses(const renderer::FrameReport& report) {
 
 void printMemory(const FrameResult& result) {
     std::uint64_t library = 0, renderer = 0;
-    fmt::print("\n{:<28} {:<8} {:>10}\n", "Memory", "of", "MiB");
+    fmt::print("\n{:<28} {:<8} {:>10} {:>7}\n", "Memory", "of", "MiB", "copies");
     for (const renderer::MemoryUseRow& row : result.memory) {
-        (row.library ? library : renderer) += row.bytes;
-        fmt::print("{:<28} {:<8} {:>10.3f}\n", row.name, row.library ? "library" : "renderer",
-                   static_cast<double>(row.bytes) / kMiB);
+        (row.library ? library : renderer) += row.bytes * row.copies;
+        fmt::print("{:<28} {:<8} {:>10.3f} {:>7}\n", row.name, row.library ? "library" : "renderer",
+                   static_cast<double>(row.bytes) / kMiB, row.copies);
     }
     fmt::print("{:<28} {:<8} {:>10.3f}\n", "all", "library", static_cast<double>(library) / kMiB);
     fmt::print("{:<28} {:<8} {:>10.3f}\n", "all", "renderer", static_cast<double>(renderer) / kMiB);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -8,6 +9,7 @@
 #include "app/errors.h"
 #include "app/frame_json.h"
 #include "app/frame_table.h"
+#include "app/outputs.h"
 #include "app/progress.h"
 #include "app/session.h"
 
@@ -21,11 +23,6 @@ struct RenderOptions {
     std::uint32_t frames = 1;
     std::optional<float> exposure;
 };
-
-void checkOutputs(const RenderOptions& options) {
-    for (const std::string& file : {options.png, options.exr, options.statistics})
-        if (!file.empty()) renderer::checkWritable(file);
-}
 
 FrameResult renderFrames(renderer::Renderer& renderer, const Session& session, const RenderOptions& options) {
     const renderer::ShadowMode mode = shadowModeOf(options.shadows);
@@ -73,7 +70,13 @@ int render(const RenderOptions& options) {
     if (options.exposure && !(std::abs(*options.exposure) <= 40.0f))
         throw UsageError("--exposure must be an EV100 from -40 to 40.");
     rendererDescOf(options.settings);  // refuses wrong settings before anything is started
-    checkOutputs(options);
+    if (options.settings.unquantised && options.shadows != "inline")
+        throw UsageError("--unquantised goes with --shadows inline alone.");
+    const std::string extension = std::filesystem::path(options.png).extension().string();
+    if (!extension.empty() && extension != ".png" && extension != ".PNG")
+        throw UsageError(fmt::format("'{}' is no name for a PNG file: it must end in .png.", options.png));
+    const std::string outputs[] = {options.png, options.exr, options.statistics};
+    checkOutputs(outputs, {&options.settings.scene, 1});
     const renderer::VulkanInstance instance(instanceDescOf(options.settings));
     renderWithin(instance, options);
     return exitCodeOf(instance, options.settings);
@@ -85,9 +88,9 @@ void addRenderCommand(CLI::App& app, Work& chosen) {
     CLI::App* command = app.add_subcommand("render", "Render a scene into a picture");
     const auto options = std::make_shared<RenderOptions>();
     addSettings(*command, options->settings);
-    command->add_option("-o,--output", options->png, "The picture, a PNG file");
-    command->add_option("--exr", options->exr, "The linear picture, an EXR file");
-    command->add_option("--stats", options->statistics, "Times, memory and counters, a JSON file");
+    command->add_option("-o,--output", options->png, "The picture, a PNG file")->check(fileName());
+    command->add_option("--exr", options->exr, "The linear picture, an EXR file")->check(fileName());
+    command->add_option("--stats", options->statistics, "Times, memory and counters, a JSON file")->check(fileName());
     command->add_option("--shadows", options->shadows, "How lights are shadowed")
         ->check(CLI::IsMember({"deferred", "inline", "off"}))
         ->capture_default_str();

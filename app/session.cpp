@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "app/errors.h"
@@ -80,6 +81,27 @@ renderer::SceneCamera cameraOf(const Settings& settings, const Scene& scene) {
     return camera;
 }
 
+// Floats that far out are coarser than anything a picture could show, and no frame's origin helps.
+constexpr float kFarthestMetres = 1e8f;
+
+bool tooFar(const glm::vec3& p) {
+    return !(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthestMetres);
+}
+
+void checkReachable(const Scene& scene, const renderer::SceneCamera& camera) {
+    if (tooFar(glm::vec3(camera.worldFromCamera[3])))
+        throw UsageError(fmt::format("The camera is farther than {:g} m from the scene's origin.", kFarthestMetres));
+    for (const renderer::SceneLight& light : scene.lights) {
+        const glm::vec3 candela = light.colour * light.intensity;
+        const bool finite = std::isfinite(candela.x) && std::isfinite(candela.y) && std::isfinite(candela.z) &&
+                            std::isfinite(light.rangeMetres);
+        if (!finite) throw UsageError(fmt::format("The light '{}' is too bright to be computed.", light.name));
+        if (light.kind != renderer::LightKind::Directional && tooFar(light.position))
+            throw UsageError(fmt::format("The light '{}' is farther than {:g} m from the scene's origin.", light.name,
+                                         kFarthestMetres));
+    }
+}
+
 }  // namespace
 
 Session::Session(const renderer::VulkanInstance& instance, const Settings& settings)
@@ -88,7 +110,7 @@ Session::Session(const renderer::VulkanInstance& instance, const Settings& setti
       device_(instance, fitting(chooseDevice(instance, settings), desc_)),
       scene_(loadScene(settings)),
       camera_(cameraOf(settings, scene_)) {
-    if (settings.quiet) silenceProgress();
+    checkReachable(scene_, camera_);
     sayProgress(fmt::format("Scene {}: {} triangles, {} lights.", settings.scene, renderer::triangleCount(scene_),
                             scene_.lights.size()));
     for (std::size_t i = 0; i < std::min(scene_.notes.size(), kMostNotes); ++i) sayWarning(scene_.notes[i]);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "app/errors.h"
+#include "app/progress.h"
 
 namespace gnomon::app {
 namespace {
@@ -49,7 +50,7 @@ void addSettings(CLI::App& command, Settings& s) {
     command.add_option("--pcf-radius", s.pcfRadius, "Texels")->check(CLI::Range(1, 3))->capture_default_str();
     command.add_option("--device", s.device, "Index or part of the name of a Vulkan device (see: gnomon devices)");
     command.add_flag("--validate", s.validate, "Run under the validation layers; any message is a failure");
-    command.add_flag("--quiet", s.quiet, "No progress on stderr");
+    command.add_flag_callback("--quiet", silenceProgress, "No progress on stderr");
     command.add_option("--list-entries", s.listEntries, "Capacity of the light lists; 0: 8 per tile")
         ->check(CLI::Range(0u, kMostPoolEntries));
     command.add_option("--visibility-slots", s.visibilitySlots, "Capacity of the visibility slots; 0: 8 per tile")

@@ -23,7 +23,6 @@ struct Settings {
     std::uint32_t pcfRadius = 1;
     std::string device;
     bool validate = false;
-    bool quiet = false;
     std::uint32_t listEntries = 0, visibilitySlots = 0;
     std::string reservation = "accurate";
     std::uint32_t subgroupSize = 0;

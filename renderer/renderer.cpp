@@ -342,11 +342,12 @@ std::vector<MemoryUseRow> Renderer::memory() const {
     std::vector<MemoryUseRow> rows;
     const MemoryReport& library = s.view->memory();
     for (std::uint32_t i = 0; i < library.bufferCount; ++i) {
-        rows.push_back({library.buffers[i].name, library.buffers[i].bytes, true});
+        const BufferMemory& buffer = library.buffers[i];
+        rows.push_back({buffer.name, buffer.bytes, true, buffer.perFrame ? kFramesInFlight : 1u});
     }
     for (const auto& part :
          {s.scene.memoryRows(), s.gbuffer.memoryRows(), s.atlas.memoryRows(), s.lighting.memoryRows()}) {
-        for (const MemoryRow& row : part) rows.push_back({row.name, row.bytes, false});
+        for (const MemoryRow& row : part) rows.push_back({row.name, row.bytes, false, 1u});
     }
     return rows;
 }

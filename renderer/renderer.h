@@ -38,8 +38,9 @@ struct PassTime {
 
 struct MemoryUseRow {
     std::string name;
-    std::uint64_t bytes = 0;
-    bool library = false;  // of the library; else of the reference renderer
+    std::uint64_t bytes = 0;     // of one copy
+    bool library = false;        // of the library; else of the reference renderer
+    std::uint32_t copies = 1;    // one per frame in flight
 };
 
 struct FrameReport {

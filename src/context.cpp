@@ -192,7 +192,9 @@ void readDevice(Context::State& state, const ContextDesc& desc) {
     device.vk.GetPhysicalDeviceQueueFamilyProperties(desc.physicalDevice, &count, families);
     state.timestampPeriodNs = device.limits.timestampPeriod;
     for (std::uint32_t family : desc.queueFamilies) {
-        if (family >= count || families[family].timestampValidBits == 0) state.timestampPeriodNs = 0.0f;
+        const std::uint32_t bits = family < count ? families[family].timestampValidBits : 0;
+        if (bits == 0) state.timestampPeriodNs = 0.0f;
+        if (bits < 64) state.timestampMask &= (std::uint64_t{1} << bits) - 1;
     }
 }
 

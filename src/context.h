@@ -17,7 +17,8 @@ struct Context::State {
     std::uint32_t subgroupSize = 0;
     bool requireSubgroupSize = false;  // pipelines ask for it; else the device has no other
     std::uint32_t specialization[kSpecializationCount] = {};
-    float timestampPeriodNs = 0.0f;  // 0: no timestamps
+    float timestampPeriodNs = 0.0f;                   // 0: no timestamps
+    std::uint64_t timestampMask = ~std::uint64_t{0};  // the bits that count, in every family
     VkDescriptorSetLayout listsLayout = VK_NULL_HANDLE;
     VkDescriptorSetLayout receiversLayout = VK_NULL_HANDLE;
     VkDescriptorSetLayout shadowmapsLayout = VK_NULL_HANDLE;

@@ -98,11 +98,12 @@ Result convertShadowViews(std::span<const ShadowView> views, std::span<const Sha
                           gpu::GpuShadowView* out) noexcept {
     for (std::size_t i = 0; i < views.size(); ++i) {
         if (Result checked = checkView(i, views[i], atlases); !checked) return checked;
-        out[i] = convert(views[i], atlases[views[i].atlas]);
-        if (!std::isfinite(out[i].texelMetres)) {
+        const gpu::GpuShadowView view = convert(views[i], atlases[views[i].atlas]);
+        if (!std::isfinite(view.texelMetres)) {
             return Result::failure(Status::BadArgument, "Shadow view %u: clipFromWorld is singular.",
                                    static_cast<unsigned>(i));
         }
+        out[i] = view;
     }
     return {};
 }

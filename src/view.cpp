@@ -40,6 +40,13 @@ Result checkDesc(const ViewDesc& desc) {
         return Result::failure(Status::BadArgument, "A view of %ux%u pixels was asked for; 1x1 to %ux%u are possible.",
                                desc.maxWidthPx, desc.maxHeightPx, kMaxExtentPx, kMaxExtentPx);
     }
+    const std::uint64_t tiles = std::uint64_t(divideRoundingUp(desc.maxWidthPx, kShadowTileSizePx)) *
+                                divideRoundingUp(desc.maxHeightPx, kShadowTileSizePx);
+    if (tiles * roundUpToEarlyWord(kMaxLightsPerView) > 0xFFFFFFFFu) {
+        return Result::failure(Status::BadArgument,
+                               "A view of %ux%u pixels has more tiles than list space can be counted for.",
+                               desc.maxWidthPx, desc.maxHeightPx);
+    }
     if (desc.framesInFlight == 0 || desc.framesInFlight > kMaxFramesInFlight) {
         return Result::failure(Status::BadArgument, "ViewDesc::framesInFlight is %u; it must be 1 to %u.",
                                desc.framesInFlight, kMaxFramesInFlight);

@@ -51,7 +51,6 @@ struct View::State {
     DeviceBuffer device[gpu::kListsBindingCount];  // those that are not per frame, by binding
     DeviceImage noFaceNormals;                     // stand in for what the host does not have
     DeviceImage noAtlas;
-    bool placeholdersReady = false;
     VkDescriptorPool descriptors = VK_NULL_HANDLE;
     VkQueryPool queries = VK_NULL_HANDLE;
     FrameSlot slots[kMaxFramesInFlight];

@@ -75,15 +75,15 @@ void publish(View::State& state, VkCommandBuffer commands) {
     state.pendingReads = state.pendingWrites = 0;
 }
 
-// Images that are bound but never read still need the layout that their descriptor names.
+// Images that are bound but never read still need the layout that their descriptor names. Every frame, since a host may
+// drop a recorded frame without submitting it.
 void preparePlaceholders(View::State& state, VkCommandBuffer commands) {
-    if (state.placeholdersReady) return;
-    state.placeholdersReady = true;
     VkImageMemoryBarrier2 barriers[2] = {};
     const VkImage images[2] = {state.noFaceNormals.image, state.noAtlas.image};
     const VkImageAspectFlags aspects[2] = {VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_ASPECT_DEPTH_BIT};
     for (int i = 0; i < 2; ++i) {
         barriers[i].sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+        barriers[i].srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
         barriers[i].dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
         barriers[i].dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
         barriers[i].oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -146,7 +146,8 @@ void readTimes(const View::State& state, const FrameSlot& slot, std::uint32_t sl
             context.device.device, state.queries, (slotIndex * kPassCount + id) * 2, 2, sizeof(ticks), ticks,
             sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
         if (result != VK_SUCCESS) continue;
-        const double ns = static_cast<double>(ticks[1] - ticks[0]) * static_cast<double>(context.timestampPeriodNs);
+        const double ns = static_cast<double>((ticks[1] - ticks[0]) & context.timestampMask) *
+                          static_cast<double>(context.timestampPeriodNs);
         out.passes[out.passCount++] = {passOf(static_cast<PassId>(id)).name, ns * 1e-6};
     }
 }

@@ -70,6 +70,7 @@ struct Light {
 /// A spot needs one view that holds its cone; a point light six, of 90 degrees or a little more: where the rectangle
 /// reaches a few texels beyond 90 degrees, filters are seamless across faces.
 struct ShadowView {
+    /// Perspective: clip w is the distance along the view's axis in metres.
     float clipFromWorld[16] = {};
     std::uint32_t atlas = 0;  ///< 0 to 3
     std::uint32_t layer = 0;

@@ -196,7 +196,8 @@ public:
     /// Phase 1. Fails with a sentence on bad input; the frame must then not be recorded.
     Result beginFrame(const FrameDesc& frame, PrepareReport* report = nullptr) noexcept;
 
-    // Each records one pass with its barriers, debug label and timestamps. Before and after, the library's buffers need
+    // Each records one pass with its barriers, debug label and timestamps, and leaves its own compute pipeline and
+    // descriptor sets 0 to 2 bound. Before and after, the library's buffers need
     // no barrier by the host as long as everything runs on one queue. Across queues a semaphore is enough; since the
     // lists exist once per view, the next frame's recordHierarchicalDepth() must wait for this frame's
     // recordEndFrame().

@@ -30,9 +30,6 @@ void Device::create(const std::vector<const char*>& extensions) {
     VkPhysicalDeviceFeatures found{};
     vkGetPhysicalDeviceFeatures(info_.handle, &found);
     features_.samplerAnisotropy = found.samplerAnisotropy;
-    features_.depthClamp = found.depthClamp;
-    features_.shaderInt64 = found.shaderInt64;
-    features_.fillModeNonSolid = found.fillModeNonSolid;
 
     VkPhysicalDeviceVulkan13Features v13{};
     v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
@@ -40,10 +37,6 @@ void Device::create(const std::vector<const char*>& extensions) {
     v13.dynamicRendering = VK_TRUE;
     v13.computeFullSubgroups = VK_TRUE;
     v13.subgroupSizeControl = VK_TRUE;
-    VkPhysicalDeviceVulkan12Features v12{};
-    v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-    v12.pNext = &v13;
-    v12.hostQueryReset = VK_FALSE;
 
     const float priority = 1.0f;
     VkDeviceQueueCreateInfo queue{};
@@ -53,7 +46,7 @@ void Device::create(const std::vector<const char*>& extensions) {
     queue.pQueuePriorities = &priority;
     VkDeviceCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-    create.pNext = &v12;
+    create.pNext = &v13;
     create.queueCreateInfoCount = 1;
     create.pQueueCreateInfos = &queue;
     create.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
@@ -91,7 +84,7 @@ void Device::name(VkObjectType type, std::uint64_t object, const std::string& na
     if (!instance_.debugLabels()) return;
     VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, nullptr, type, object,
                                        name.c_str()};
-    vkSetDebugUtilsObjectNameEXT(device_, &info);
+    instance_.debug().setObjectName(device_, &info);
 }
 
 void Device::beginLabel(VkCommandBuffer commands, const char* name) const {
@@ -99,11 +92,11 @@ void Device::beginLabel(VkCommandBuffer commands, const char* name) const {
     VkDebugUtilsLabelEXT label{};
     label.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
     label.pLabelName = name;
-    vkCmdBeginDebugUtilsLabelEXT(commands, &label);
+    instance_.debug().beginLabel(commands, &label);
 }
 
 void Device::endLabel(VkCommandBuffer commands) const {
-    if (instance_.debugLabels()) vkCmdEndDebugUtilsLabelEXT(commands);
+    if (instance_.debugLabels()) instance_.debug().endLabel(commands);
 }
 
 Commands::Commands(const Device& device) : device_(device) {
@@ -133,26 +126,15 @@ VkCommandBuffer Commands::begin() {
     return commands_;
 }
 
-void Commands::submit(VkSemaphore waitFor, VkSemaphore signal) {
+void Commands::submit() {
     check(vkEndCommandBuffer(commands_), "ending a command buffer");
     VkCommandBufferSubmitInfo commands{};
     commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
     commands.commandBuffer = commands_;
-    VkSemaphoreSubmitInfo semaphores[2]{};
-    for (VkSemaphoreSubmitInfo& s : semaphores) {
-        s.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
-        s.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    }
-    semaphores[0].semaphore = waitFor;
-    semaphores[1].semaphore = signal;
     VkSubmitInfo2 submit{};
     submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
     submit.commandBufferInfoCount = 1;
     submit.pCommandBufferInfos = &commands;
-    submit.waitSemaphoreInfoCount = waitFor != VK_NULL_HANDLE ? 1 : 0;
-    submit.pWaitSemaphoreInfos = &semaphores[0];
-    submit.signalSemaphoreInfoCount = signal != VK_NULL_HANDLE ? 1 : 0;
-    submit.pSignalSemaphoreInfos = &semaphores[1];
     check(vkResetFences(device_.handle(), 1, &fence_), "resetting a fence");
     check(vkQueueSubmit2(device_.queue(), 1, &submit, fence_), "submitting commands");
     submitted_ = true;
@@ -162,10 +144,6 @@ void Commands::wait() {
     if (!submitted_) return;
     check(vkWaitForFences(device_.handle(), 1, &fence_, VK_TRUE, UINT64_MAX), "waiting for the device");
     submitted_ = false;
-}
-
-bool Commands::finished() const {
-    return !submitted_ || vkGetFenceStatus(device_.handle(), fence_) == VK_SUCCESS;
 }
 
 }  // namespace gnomon::renderer

@@ -12,7 +12,7 @@
 namespace gnomon::renderer {
 
 /// Creates the device with synchronization2, dynamicRendering, computeFullSubgroups and subgroupSizeControl, and with
-/// samplerAnisotropy, depthClamp and shaderInt64 where present; robustBufferAccess stays off. Not thread safe.
+/// samplerAnisotropy where present; robustBufferAccess stays off. Not thread safe.
 class Device {
 public:
     /// The instance must outlive the device. `extensions` (for example VK_KHR_swapchain) must exist. Throws GpuError.
@@ -72,11 +72,9 @@ public:
 
     /// Waits for the previous submission, then begins recording.
     VkCommandBuffer begin();
-    /// Ends recording and submits. The semaphores are optional; the wait is at all commands.
-    void submit(VkSemaphore waitFor = VK_NULL_HANDLE, VkSemaphore signal = VK_NULL_HANDLE);
+    /// Ends recording and submits.
+    void submit();
     void wait();
-    /// True once the last submission has finished (or there was none). Never waits.
-    [[nodiscard]] bool finished() const;
 
 private:
     const Device& device_;

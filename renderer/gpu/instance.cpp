@@ -41,6 +41,19 @@ const char* sentenceOf(VkResult result) {
     }
 }
 
+DebugFunctions loadDebugFunctions(VkInstance instance) {
+    const auto load = [instance]<typename Function>(Function& function, const char* name) {
+        function = reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
+    };
+    DebugFunctions functions;
+    load(functions.createMessenger, "vkCreateDebugUtilsMessengerEXT");
+    load(functions.destroyMessenger, "vkDestroyDebugUtilsMessengerEXT");
+    load(functions.setObjectName, "vkSetDebugUtilsObjectNameEXT");
+    load(functions.beginLabel, "vkCmdBeginDebugUtilsLabelEXT");
+    load(functions.endLabel, "vkCmdEndDebugUtilsLabelEXT");
+    return functions;
+}
+
 VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                          VkDebugUtilsMessageTypeFlagsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
@@ -242,6 +255,7 @@ VulkanInstance::VulkanInstance(const InstanceDesc& desc) : log_(std::make_unique
     check(created, "creating the instance");
     // Loader trampolines for device functions too, so that several devices can live side by side.
     volkLoadInstance(instance_);
+    if (debugUtils_) debug_ = loadDebugFunctions(instance_);
     if (desc.validation && debugUtils_) {
         VkDebugUtilsMessengerCreateInfoEXT messenger{};
         messenger.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
@@ -251,7 +265,7 @@ VulkanInstance::VulkanInstance(const InstanceDesc& desc) : log_(std::make_unique
             VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
         messenger.pfnUserCallback = desc.printMessages ? onMessagePrinted : onMessage;
         messenger.pUserData = log_.get();
-        if (vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_) != VK_SUCCESS) {
+        if (debug_.createMessenger(instance_, &messenger, nullptr, &messenger_) != VK_SUCCESS) {
             vkDestroyInstance(instance_, nullptr);
             throw GpuError("The callback for validation messages could not be installed.");
         }
@@ -259,7 +273,7 @@ VulkanInstance::VulkanInstance(const InstanceDesc& desc) : log_(std::make_unique
 }
 
 VulkanInstance::~VulkanInstance() {
-    if (messenger_ != VK_NULL_HANDLE) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
+    if (messenger_ != VK_NULL_HANDLE) debug_.destroyMessenger(instance_, messenger_, nullptr);
     vkDestroyInstance(instance_, nullptr);
 }
 

@@ -48,6 +48,16 @@ struct DeviceInfo {
     VkPhysicalDeviceProperties properties{};
 };
 
+/// Functions of VK_EXT_debug_utils, null without it. Per instance: volk's globals hold those of the instance made last,
+/// which may be null.
+struct DebugFunctions {
+    PFN_vkCreateDebugUtilsMessengerEXT createMessenger = nullptr;
+    PFN_vkDestroyDebugUtilsMessengerEXT destroyMessenger = nullptr;
+    PFN_vkSetDebugUtilsObjectNameEXT setObjectName = nullptr;
+    PFN_vkCmdBeginDebugUtilsLabelEXT beginLabel = nullptr;
+    PFN_vkCmdEndDebugUtilsLabelEXT endLabel = nullptr;
+};
+
 class VulkanInstance {
 public:
     /// Throws GpuError if there is no Vulkan loader, no Vulkan 1.3 or no validation layer although one was asked for.
@@ -58,6 +68,7 @@ public:
 
     [[nodiscard]] VkInstance handle() const { return instance_; }
     [[nodiscard]] bool debugLabels() const { return debugUtils_; }
+    [[nodiscard]] const DebugFunctions& debug() const { return debug_; }
     [[nodiscard]] MessageLog& messages() const { return *log_; }
 
     /// Every physical device in the loader's order, suitable or not.
@@ -70,6 +81,7 @@ public:
 private:
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    DebugFunctions debug_;
     bool debugUtils_ = false;
     std::unique_ptr<MessageLog> log_;
 };

@@ -54,12 +54,6 @@ MemoryPool::~MemoryPool() {
     for (const auto& block : blocks_) vkFreeMemory(device_, block->memory, nullptr);
 }
 
-std::uint64_t MemoryPool::bytesReserved() const {
-    std::uint64_t bytes = 0;
-    for (const auto& block : blocks_) bytes += block->size;
-    return bytes;
-}
-
 std::uint32_t MemoryPool::memoryType(std::uint32_t allowed, MemoryUse use) const {
     constexpr VkMemoryPropertyFlags kMapped =
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;

@@ -50,8 +50,6 @@ public:
 
     /// Throws GpuError if the device is out of memory or has no memory of that kind.
     Allocation allocate(const VkMemoryRequirements& requirements, MemoryUse use, bool forImage);
-    /// Bytes taken from the device, whether or not handed out.
-    [[nodiscard]] std::uint64_t bytesReserved() const;
 
 private:
     friend class Allocation;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <glm/gtc/type_ptr.hpp>
 
 namespace gnomon::renderer {
@@ -174,7 +173,6 @@ void ShadowAtlasImage::drawLayer(VkCommandBuffer commands, const GpuScene& scene
 
 ShadowAtlasStatistics ShadowAtlasImage::record(VkCommandBuffer commands, const GpuScene& scene,
                                                std::span<const ShadowLight> lights, const ShadowPlan& plan) {
-    const auto start = std::chrono::steady_clock::now();
     ShadowAtlasStatistics statistics;
     findTasks(scene, lights, plan, statistics);
     if (!tasks_.empty()) {
@@ -188,8 +186,6 @@ ShadowAtlasStatistics ShadowAtlasImage::record(VkCommandBuffer commands, const G
                                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, access::kSampled);
         recordBarriers(commands, {&barrier, 1});
     }
-    statistics.cullMilliseconds =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return statistics;
 }
 

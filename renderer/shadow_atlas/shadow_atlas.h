@@ -18,7 +18,6 @@ struct ShadowAtlasStatistics {
     std::uint32_t viewsDrawn = 0, viewsCached = 0;
     std::uint32_t draws = 0;
     std::uint64_t triangles = 0;
-    double cullMilliseconds = 0.0;  ///< CPU time of culling and recording
 };
 
 /// Not thread safe. Layout outside of record(): SHADER_READ_ONLY_OPTIMAL.
@@ -37,8 +36,6 @@ public:
     /// Afterwards visible to sampled reads of compute and fragment shaders.
     ShadowAtlasStatistics record(VkCommandBuffer commands, const GpuScene& scene, std::span<const ShadowLight> lights,
                                  const ShadowPlan& plan);
-    /// Everything is drawn again next time (to measure, or after another scene).
-    void forget() { drawn_.clear(); }
 
     [[nodiscard]] const GpuImage& image() const { return image_; }
     /// For FrameDesc::atlases.

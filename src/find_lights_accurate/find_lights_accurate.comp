@@ -62,7 +62,9 @@ void testPixels(Receiver receiver, uint groups) {
             bool casts = lightCasts(light);
             vec3 toLight;
             bool reached = receiver.valid && lightReaches(light, receiver.positionWs, receiver.mask, toLight);
-            if (reached && casts && cullFacing) reached = facesLight(receiver.faceNormalWs, toLight);
+            // A faded shadow lets some light through even where the face looks away.
+            bool dark = casts && light.shadowFade >= 1.0;
+            if (reached && dark && cullFacing) reached = facesLight(receiver.faceNormalWs, toLight);
             found |= (reached ? 1u : 0u) << bit;
             casting |= (casts ? 1u : 0u) << bit;
         }
@@ -104,17 +106,17 @@ uvec2 countLights(uint groups) {
 // Space for this tile's `count` lights, or kNoListSpace. Called by one lane.
 uint reserve(uint tileIndex, uint count) {
     uint capacity = approximateCounts[tileIndex];
+    if (count > capacity) atomicAdd(counters.accurateExceedsApproximate, 1u);
     if (kListReservation == kReserveAccurate) {
         uint wanted = roundUpToEarlyWord(count);
         uint slotId = wanted == 0u ? 0u : atomicAdd(counters.listEntries, wanted);
         bool fits = slotId <= frame.pools.x && wanted <= frame.pools.x - slotId;
         if (!fits) atomicAdd(counters.listOverflowTiles, 1u);
-        if (count > capacity) atomicAdd(counters.accurateExceedsApproximate, 1u);
         return fits ? slotId : kNoListSpace;
     }
     uint slotId = tileLightSlotIds[tileIndex];
-    if (count > capacity) atomicAdd(counters.accurateExceedsApproximate, 1u);
-    if (kListReservation == kReserveFixed) capacity = roundUpToEarlyWord(frame.pools.z);
+    // Phase 2 looked for space only where it found lights.
+    if (kListReservation == kReserveFixed) capacity = capacity == 0u ? 0u : roundUpToEarlyWord(frame.pools.z);
     if (slotId != kNoListSpace && count > capacity) {
         atomicAdd(counters.listOverflowTiles, 1u);
         return kNoListSpace;

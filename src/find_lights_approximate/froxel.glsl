@@ -4,7 +4,8 @@
 // and never one that does: phase 3 writes into the space that is reserved from these answers.
 // Source: the paper, section 2.2 (three tests); Wronski 2017, "Cull that cone!".
 // Floats: every comparison gives way by `margin`, which bounds the rounding of both this test and the per-pixel test
-// (positions of up to frame.zBins.w metres).
+// (positions of up to frame.zBins.w metres). The per-pixel test compares cosines, whose rounding widens narrow cones the
+// most, so cones are taken a little wider here.
 #ifndef GNOMON_FIND_LIGHTS_APPROXIMATE_FROXEL_GLSL
 #define GNOMON_FIND_LIGHTS_APPROXIMATE_FROXEL_GLSL
 
@@ -51,16 +52,21 @@ bool sphereOutside(Froxel f, vec3 centre, float radius) {
     return max(max(above.x, above.y), max(below.x, below.y)) > reach;
 }
 
-bool coneMissesSphere(GpuLight light, vec3 centre, float radius) {
+// Cosine and sine of the half-angle at which the per-pixel test may still say yes.
+vec2 widenedCone(GpuLight light) {
+    float cosine = light.cosOuter - 1e-6;
+    return vec2(cosine, sqrt(max(1.0 - cosine * cosine, 0.0)));
+}
+
+bool coneMissesSphere(GpuLight light, vec2 cone, vec3 centre, float radius) {
     vec3 v = centre - light.positionVs;
     float along = dot(v, light.directionVs);
-    float across = sqrt(max(dot(v, v) - along * along, 0.0));
-    return light.cosOuter * across - along * light.sinOuter > radius || along < -radius ||
-           along > radius + light.rangeMetres;
+    float across = length(v - light.directionVs * along);
+    return cone.x * across - along * cone.y > radius || along < -radius || along > radius + light.rangeMetres;
 }
 
 // The froxel's corners against the pyramid around the cone, which is the spot's own clip space up to scale.
-bool pyramidMissesFroxel(GpuLight light, Froxel f) {
+bool pyramidMissesFroxel(GpuLight light, vec2 cone, Froxel f) {
     vec3 axis = light.directionVs;
     vec3 helper = abs(axis.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
     vec3 u = normalize(cross(axis, helper));
@@ -73,8 +79,8 @@ bool pyramidMissesFroxel(GpuLight light, Froxel f) {
         vec2 slope = vec2(high.x ? f.slopeMax.x : f.slopeMin.x, high.y ? f.slopeMax.y : f.slopeMin.y);
         vec3 q = vec3(isOrthographic() ? slope : slope * z, z) - light.positionVs;
         float along = dot(q, axis);
-        vec2 side = vec2(dot(q, u), dot(q, v)) * light.cosOuter;
-        least = min(least, vec4(side, -side) - light.sinOuter * along);
+        vec2 side = vec2(dot(q, u), dot(q, v)) * cone.x;
+        least = min(least, vec4(side, -side) - cone.y * along);
         front = max(front, along);
     }
     return max(max(least.x, least.y), max(least.z, least.w)) > f.margin || front < -f.margin;
@@ -86,8 +92,9 @@ bool lightMayReachFroxel(GpuLight light, Froxel f) {
     if (sphereOutside(f, light.positionVs, light.rangeMetres)) return false;
     if (type == kLightPoint) return true;
     vec3 centre = 0.5 * (f.boxMin + f.boxMax);
-    if (coneMissesSphere(light, centre, 0.5 * length(f.boxMax - f.boxMin) + f.margin)) return false;
-    return !pyramidMissesFroxel(light, f);
+    vec2 cone = widenedCone(light);
+    if (coneMissesSphere(light, cone, centre, 0.5 * length(f.boxMax - f.boxMin) + f.margin)) return false;
+    return !pyramidMissesFroxel(light, cone, f);
 }
 
 #endif

@@ -1,5 +1,5 @@
 // The set of the receivers: the host's depth and, where it has them, face normals, receiver flags and depth pyramid.
-// Images that the host does not have are bound to its depth and never read.
+// Placeholders are bound where the host has no image, and never read.
 #ifndef GNOMON_GPU_INTERFACE_RECEIVERS_SET_GLSL
 #define GNOMON_GPU_INTERFACE_RECEIVERS_SET_GLSL
 

@@ -31,7 +31,7 @@ struct TileSpan {
     std::uint16_t first = 0, last = 0;
 };
 
-/// What coveredSpans() found: rows firstRow to lastRow - 1 have a span each.
+/// What cover() found: rows firstRow to lastRow - 1 have a span each.
 struct Coverage {
     std::uint32_t firstRow = 0, lastRow = 0;
     bool everywhere = false;  // all tiles; no spans are written

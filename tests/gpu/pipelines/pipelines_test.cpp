@@ -34,7 +34,7 @@ std::unique_ptr<VulkanInstance> makeInstance(const InstanceDesc& desc) {
 
 class PipelinesTest : public ::testing::Test {
 protected:
-    // Made once, and gone before the process ends: some drivers unload themselves before static objects are destroyed.
+    // One for all tests, and gone before static objects are.
     static void SetUpTestSuite() {
         for (const bool validation : {true, false}) {
             try {

@@ -1,6 +1,5 @@
-// Deferred equals inline in real scenes, where they are: in the folder that GNOMON_SCENES_DIR names, or in
-// ../shared/scenes beside the source folder. Every glTF file that loads, each with 64 lights more. Left out in builds
-// with sanitizers unless GNOMON_FULL=1.
+// Deferred equals inline in real scenes, where they are: in the folder that GNOMON_SCENES_DIR names. Every glTF file that
+// loads, each with 64 lights more. Left out in builds with sanitizers unless GNOMON_FULL=1.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -16,8 +15,8 @@ GNOMON_IMAGE_TEST_SUITE(RealScenes);
 namespace fs = std::filesystem;
 
 fs::path scenesFolder() {
-    if (const char* named = std::getenv("GNOMON_SCENES_DIR")) return named;
-    return fs::path(GNOMON_SOURCE_DIR).parent_path() / "shared/scenes";
+    const char* named = std::getenv("GNOMON_SCENES_DIR");
+    return named != nullptr ? named : "";
 }
 
 // Folders that hold files for other tests: broken ones, and ones that need what we refuse.

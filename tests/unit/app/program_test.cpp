@@ -138,6 +138,25 @@ TEST_F(Program, OutputsThatCannotBeWrittenAreFoundFirst) {
     expectRefused("bench --json missing/out.json", 1);
 }
 
+TEST_F(Program, OutputsAreFilesOfTheirOwn) {
+    expectRefused("render boxes -o ''", 2);
+    expectRefused("render boxes -o out.jpg", 2);
+    expectRefused("render boxes -o same.png --stats ./same.png", 2);
+    std::ofstream(folder_ / "scene.glb") << "kept";
+    expectRefused("render scene.glb --exr ./scene.glb", 2);
+    expectRefused("bench scene.glb --json scene.glb", 2);
+    std::string kept;
+    std::ifstream(folder_ / "scene.glb") >> kept;
+    EXPECT_EQ(kept, "kept");
+    expectGood("render boxes --size 16x16 -o a.png");
+    expectRefused("compare a.png a.png --diff ./a.png", 2);
+}
+
+TEST_F(Program, NothingFartherThanFloatsReach) {
+    expectRefused("render boxes --size 16x16 --quiet --camera 1e10,2,3:0,0,0", 2);
+    expectRefused("render boxes --size 16x16 --unquantised", 2);
+}
+
 TEST_F(Program, RendersAndDescribesAFrame) {
     expectGood("render boxes --size 160x90 -o out.png --exr out.exr --stats out.json --frames 2");
     const renderer::Picture picture = renderer::readPng(folder_ / "out.png");

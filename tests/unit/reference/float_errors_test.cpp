@@ -57,7 +57,7 @@ bool reachesInFloats(const LightModel& light, const Pixel& pixel, F3 position) {
             dotF(v, f3(light.direction)) < float(std::cos(light.outerAngle)) * std::sqrt(squared))
             return false;
     }
-    if (!light.casts || pixel.subsurface) return true;
+    if (!light.casts || light.shadowFade < 1.0 || pixel.subsurface) return true;
     const F3 to = light.type == LightType::Directional ? f3(-light.direction) : sub(f3(light.position), position);
     return dotF(f3(pixel.faceNormal), to) > 0;
 }

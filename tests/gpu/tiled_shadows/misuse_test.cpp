@@ -107,24 +107,56 @@ TEST_P(MisuseTest, MemoryReport) {
         EXPECT_LE(report.buffers[i].bytes, device().vulkan().limits().maxStorageBufferRange) << report.buffers[i].name;
 }
 
-TEST_P(MisuseTest, BeginFrame) {
-    const FrameInput input = makeRoomFrame({.seed = 40, .widthPx = 32, .heightPx = 24, .shadows = {.viewSizePx = 8}});
+FrameInput smallRoom() {
+    return makeRoomFrame({.seed = 40, .widthPx = 32, .heightPx = 24, .shadows = {.viewSizePx = 8}});
+}
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+
+TEST_P(MisuseTest, ShadowViews) {
+    const FrameInput input = smallRoom();
     ASSERT_GT(input.shadows->views.size(), 1u);
+    Rig rig(device(), {}, viewDescFor(input));
+    ASSERT_TRUE(rig.ok());
+    struct Case {
+        const char* word;
+        std::function<void(ShadowView&)> spoil;
+    };
+    const Case cases[] = {
+        {"view 1", [](ShadowView& v) { v.clipFromWorld[3] = kNan; }},
+        {"view 1", [](ShadowView& v) { std::memset(v.clipFromWorld, 0, 64); }},
+        {"view 1", [](ShadowView& v) { v.atlas = 4; }},
+        {"outside", [](ShadowView& v) { v.layer = 99; }},
+        {"outside", [](ShadowView& v) { v.xPx = 0xFFFFFFF0u; }},
+        {"outside", [](ShadowView& v) { v.heightPx = 0xFFFFFFFFu; }},
+        {"at least", [](ShadowView& v) { v.widthPx = 7; }},
+        {"near", [](ShadowView& v) { v.nearMetres = 0; }},
+        {"near", [](ShadowView& v) { v.farMetres = v.nearMetres; }},
+        {"near", [](ShadowView& v) { v.orthographic = true, v.farMetres = kInf; }},
+        {"near", [](ShadowView& v) { v.nearMetres = kNan; }},
+    };
+    for (std::size_t i = 0; i < std::size(cases); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i) + " " + cases[i].word);
+        FrameDesc frame = rig.frameDesc(input);
+        std::vector<ShadowView> views = input.shadows->views;
+        cases[i].spoil(views[1]);
+        frame.shadowViews = views;
+        expectRefused(rig.view().beginFrame(frame), cases[i].word);
+    }
+    checkFrame(input, rig.run(input));
+}
+
+TEST_P(MisuseTest, BeginFrame) {
+    const FrameInput input = smallRoom();
     Rig rig(device(), {}, viewDescFor(input));
     ASSERT_TRUE(rig.ok());
     std::vector<ShadowView> views = input.shadows->views;
     std::vector<ShadowAtlas> atlases;
-    const auto withView = [&](FrameDesc& f, auto spoil) {
-        views = input.shadows->views;
-        spoil(views[1]);
-        f.shadowViews = views;
-    };
     const auto withAtlases = [&](FrameDesc& f, auto spoil) {
         atlases.assign(f.atlases.begin(), f.atlases.end());
         spoil(atlases);
         f.atlases = atlases;
     };
-    constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
     std::vector<Light> lights = input.lights;
     struct Case {
         const char* word;
@@ -139,17 +171,6 @@ TEST_P(MisuseTest, BeginFrame) {
         {"atlas", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a[0].view = VK_NULL_HANDLE; }); }},
         {"atlas", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a[1].widthPx = 0; }); }},
         {"atlas", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a.resize(1); }); }},
-        {"view 1", [&](FrameDesc& f) { withView(f, [](ShadowView& v) { v.clipFromWorld[3] = kNan; }); }},
-        {"view 1", [&](FrameDesc& f) { withView(f, [](ShadowView& v) { std::memset(v.clipFromWorld, 0, 64); }); }},
-        {"view 1", [&](FrameDesc& f) { withView(f, [](ShadowView& v) { v.atlas = 4; }); }},
-        {"outside", [&](FrameDesc& f) { withView(f, [](ShadowView& v) { v.layer = 99; }); }},
-        {"outside", [&](FrameDesc& f) { withView(f, [](ShadowView& v) { v.xPx = 0xFFFFFFF0u; }); }},
-        {"outside", [&](FrameDesc& f) { withView(f, [](ShadowView& v) { v.heightPx = 0xFFFFFFFFu; }); }},
-        {"at least", [&](FrameDesc& f) { withView(f, [](ShadowView& v) { v.widthPx = 7; }); }},
-        {"near", [&](FrameDesc& f) { withView(f, [](ShadowView& v) { v.nearMetres = 0; }); }},
-        {"near", [&](FrameDesc& f) { withView(f, [](ShadowView& v) { v.farMetres = v.nearMetres; }); }},
-        {"near", [&](FrameDesc& f) { withView(f, [](ShadowView& v) { v.orthographic = true, v.farMetres = kInf; }); }},
-        {"near", [&](FrameDesc& f) { withView(f, [](ShadowView& v) { v.nearMetres = kNan; }); }},
         {"subsurface", [](FrameDesc& f) { f.subsurfaceBiasMetres = -1; }},
         {"subsurface", [](FrameDesc& f) { f.subsurfaceBiasMetres = kNan; }},
         {"maxShadowViews",

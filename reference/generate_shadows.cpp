@@ -132,7 +132,7 @@ Visibility sampleView(const ShadowViewModel& view, const LightModel& light, cons
     const int radius = input.filter == ShadowFilter::Pcf ? input.pcfRadius : 0;
     const double texel = view.orthographic ? view.texelMetres : view.texelMetres * std::max(first.linearDepth, 0.0);
     const double texelError = (view.orthographic ? 0.0 : view.texelMetres * first.linearDepthError) + 1e-6 * texel;
-    const double slant = slantOf(view, facing.normal);
+    const double slant = std::max(slantOf(view, facing.normal), 0.1);
     const double offset = texel * (radius + 1.0) * slant;
     const double offsetError = (radius + 1.0) * (texel * kRoundings * kFloatRoundoff + texelError * slant);
     const Vec3 moved = pixel.position + facing.normal * (sign * offset);

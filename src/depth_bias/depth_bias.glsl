@@ -14,13 +14,16 @@
 #include "gpu_interface/structs.h"
 #include "shading/receiver.glsl"
 
+// Rasterizers snap vertices to 2^-4 (SwiftShader) to 2^-8 of a texel, which tilts faces that look straight at the light.
+const float kLeastSlant = 0.1;
+
 // Metres; `texelMetres` at the receiver, `filterRadius` in texels.
 vec3 normalOffset(GpuShadowView view, Receiver receiver, vec3 toLight, float texelMetres, float filterRadius) {
     precise vec3 n = receiver.faceNormalWs;
     precise vec3 x = vec3(view.clipFromWorld[0].x, view.clipFromWorld[1].x, view.clipFromWorld[2].x);
     precise vec3 y = vec3(view.clipFromWorld[0].y, view.clipFromWorld[1].y, view.clipFromWorld[2].y);
     precise float slant = abs(dot(n, x)) * inversesqrt(dot(x, x)) + abs(dot(n, y)) * inversesqrt(dot(y, y));
-    precise float metres = texelMetres * (filterRadius + 1.0) * slant;
+    precise float metres = texelMetres * (filterRadius + 1.0) * max(slant, kLeastSlant);
     precise vec3 offset = n * (dot(n, toLight) >= 0.0 ? metres : -metres);
     return offset;
 }

@@ -116,7 +116,7 @@ float visibilityInFloats(const LightModel& light, const Pixel& pixel, F3 p, cons
     const float texel = float(view.texelMetres) * projectInFloats(view, p).w;
     const F3 axisX = f3(rowOf(view.clipFromWorld, 0)), axisY = f3(rowOf(view.clipFromWorld, 1));
     const float slant = std::abs(dotF(n, axisX)) / lengthF(axisX) + std::abs(dotF(n, axisY)) / lengthF(axisY);
-    const float offset = texel * (radius + 1.0f) * slant * (c >= 0 ? 1.0f : -1.0f);
+    const float offset = texel * (radius + 1.0f) * std::max(slant, 0.1f) * (c >= 0 ? 1.0f : -1.0f);
     const F4 clip = projectInFloats(view, mad(p, n, offset));
     if (clip.w <= 0) return 1;
     float bias = float(light.biasMetres);

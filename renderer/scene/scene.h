@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_precision.hpp>
 #include <limits>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "gnomon/result.h"
+#include "renderer/scene/animation.h"
 
 namespace gnomon::renderer {
 
@@ -69,6 +71,9 @@ struct Primitive {
     std::vector<glm::vec4> tangents;  // w: handedness; empty: derived from uv by the shader
     std::vector<glm::vec2> texcoords[2];
     std::vector<glm::vec4> colours;      // linear; empty: white
+    std::vector<glm::u16vec4> joints;    // per vertex, into the instance's skin; empty: rigid
+    std::vector<glm::vec4> weights;      // of the joints, sum 1; same length
+    std::vector<MorphTarget> targets;    // as many in every primitive of a mesh
     std::vector<std::uint32_t> indices;  // multiple of three, each below positions.size()
     std::uint32_t material = 0;
     Bounds bounds;  // of the positions that indices use, object space
@@ -77,12 +82,15 @@ struct Primitive {
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
+    std::vector<float> weights;  // of the morph targets, where no node gives others
 };
 
 struct Instance {
     std::string name;
     std::uint32_t mesh = 0;
-    glm::mat4 worldFromObject{1.0f};
+    glm::mat4 worldFromObject{1.0f};  // at rest; of a skinned instance: identity
+    std::uint32_t node = kNone;       // moves with this node
+    std::uint32_t skin = kNone;       // posed in world space by this skin's joints
 };
 
 /// True when the instance turns clockwise triangles into counter-clockwise ones: swap the front face when drawing it.
@@ -104,6 +112,7 @@ struct SceneLight {
     float innerConeAngle = 0.0f, outerConeAngle = 0.785398163f;  // half-angles, radians
     float sourceRadius = 0.0f;                                   // metres, directional: radians; 0: none given
     bool casts = true;
+    std::uint32_t node = kNone;  // moves with this node; position and direction are those at rest
 };
 
 struct SceneCamera {
@@ -114,6 +123,7 @@ struct SceneCamera {
     float orthographicHalfHeight = 1.0f;  // metres
     float nearMetres = 0.05f;
     float farMetres = std::numeric_limits<float>::infinity();
+    std::uint32_t node = kNone;  // moves with this node
 };
 
 struct Scene {
@@ -124,6 +134,9 @@ struct Scene {
     std::vector<Instance> instances;
     std::vector<SceneLight> lights;
     std::vector<SceneCamera> cameras;
+    std::vector<Node> nodes;  // only those that something hangs on; parents first
+    std::vector<Skin> skins;
+    std::vector<Animation> animations;            // all are played at once, each in its own loop
     glm::vec3 skyColour{0.02f, 0.03f, 0.05f};     // ambient from above and background, W/(m^2 sr) up to exposure
     glm::vec3 groundColour{0.01f, 0.01f, 0.01f};  // ambient from below
     std::optional<float> exposureEv100;           // empty: from the picture

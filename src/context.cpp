@@ -19,8 +19,10 @@ std::uint32_t providerOf(Filter filter) {
             return kProviderPcf;
         case Filter::Off:
             return kProviderOff;
+        case Filter::Pcss:
+            return kProviderPcss;
     }
-    return kProviderPcf;
+    return kProviderPcss;
 }
 
 std::uint32_t reservationOf(ListReservation reservation) {
@@ -45,6 +47,15 @@ Result checkDesc(const ContextDesc& desc) {
     if (desc.pcfRadius < 1 || desc.pcfRadius > kMaxPcfRadius) {
         return Result::failure(Status::BadArgument, "ContextDesc::pcfRadius is %u; it must be 1 to %u texels.",
                                desc.pcfRadius, kMaxPcfRadius);
+    }
+    if (desc.pcss.searchTaps < 1 || desc.pcss.searchTaps > kMaxPcssTaps || desc.pcss.filterTaps < 1 ||
+        desc.pcss.filterTaps > kMaxPcssTaps) {
+        return Result::failure(Status::BadArgument, "ContextDesc::pcss has %u and %u taps; each must be 1 to %u.",
+                               desc.pcss.searchTaps, desc.pcss.filterTaps, kMaxPcssTaps);
+    }
+    if (desc.visibilityBits != kMaxVisibilityBits && desc.visibilityBits != kMinVisibilityBits) {
+        return Result::failure(Status::BadArgument, "ContextDesc::visibilityBits is %u; it must be 8 or 4.",
+                               desc.visibilityBits);
     }
     if (desc.listReservation == ListReservation::Fixed &&
         (desc.fixedListEntriesPerTile < 1 || desc.fixedListEntriesPerTile > kMaxLightsPerView)) {
@@ -232,9 +243,11 @@ Result Context::create(const ContextDesc& desc, std::unique_ptr<Context>& out) n
         state->desc.queueFamilies = {};  // the caller's memory; copied by readDevice
         const std::uint32_t values[] = {state->subgroupSize, providerOf(desc.filter),
                                         reservationOf(desc.listReservation), desc.pcfRadius,
-                                        desc.hostDepthPyramid ? 1u : 0u};
+                                        desc.hostDepthPyramid ? 1u : 0u, desc.pcss.searchTaps,
+                                        desc.pcss.filterTaps, desc.visibilityBits};
         static_assert(kSpecSubgroupSize == 0 && kSpecProvider == 1 && kSpecListReservation == 2 &&
-                      kSpecPcfRadius == 3 && kSpecHostDepthPyramid == 4);
+                      kSpecPcfRadius == 3 && kSpecHostDepthPyramid == 4 && kSpecPcssSearchTaps == 5 &&
+                      kSpecPcssFilterTaps == 6 && kSpecVisibilityBits == 7);
         std::copy(std::begin(values), std::end(values), state->specialization);
         if (Result made = createLayouts(*state); !made) return made;
         for (std::uint32_t id = 0; id < kPassCount; ++id) {

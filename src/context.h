@@ -9,7 +9,7 @@
 
 namespace gnomon {
 
-inline constexpr std::uint32_t kSpecializationCount = 5;
+inline constexpr std::uint32_t kSpecializationCount = 8;
 
 struct Context::State {
     DeviceContext device;

@@ -84,11 +84,9 @@ gpu::GpuShadowView convert(const ShadowView& view, const ShadowAtlas& atlas) {
     v.flags = (view.orthographic ? gpu::kShadowViewOrthographicBit : 0u) |
               (view.deviceDepth == DeviceDepth::ReversedZ ? gpu::kShadowViewReversedZBit : 0u);
     v.atlasAndLayer = view.atlas | view.layer << 8;
-    const double texelX = 2.0 / (rowLength(view.clipFromWorld, 0) * width);
-    const double texelY = 2.0 / (rowLength(view.clipFromWorld, 1) * height);
-    v.texelMetres = static_cast<float>(std::max(texelX, texelY));
-    v.atlasPerTexelX = 1.0f / static_cast<float>(atlas.widthPx);
-    v.atlasPerTexelY = 1.0f / static_cast<float>(atlas.heightPx);
+    v.pxPerMetre = {static_cast<float>(rowLength(view.clipFromWorld, 0) * 0.5 * view.widthPx),
+                    static_cast<float>(rowLength(view.clipFromWorld, 1) * 0.5 * view.heightPx)};
+    v.atlasPerTexel = {1.0f / static_cast<float>(atlas.widthPx), 1.0f / static_cast<float>(atlas.heightPx)};
     return v;
 }
 
@@ -99,7 +97,7 @@ Result convertShadowViews(std::span<const ShadowView> views, std::span<const Sha
     for (std::size_t i = 0; i < views.size(); ++i) {
         if (Result checked = checkView(i, views[i], atlases); !checked) return checked;
         const gpu::GpuShadowView view = convert(views[i], atlases[views[i].atlas]);
-        if (!std::isfinite(view.texelMetres)) {
+        if (!(view.pxPerMetre.x > 0.0f && view.pxPerMetre.y > 0.0f)) {
             return Result::failure(Status::BadArgument, "Shadow view %u: clipFromWorld is singular.",
                                    static_cast<unsigned>(i));
         }

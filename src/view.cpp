@@ -62,7 +62,9 @@ Result checkDesc(const ViewDesc& desc) {
     return {};
 }
 
-ViewSizes sizesOf(const DeviceContext& device, const ViewDesc& desc) {
+ViewSizes sizesOf(const Context::State& context, const ViewDesc& desc) {
+    const DeviceContext& device = context.device;
+    const VkDeviceSize slotBytes = visibilitySlotWords(context.desc.visibilityBits) * 4;
     ViewSizes s;
     s.tilesX = divideRoundingUp(desc.maxWidthPx, kShadowTileSizePx);
     s.tilesY = divideRoundingUp(desc.maxHeightPx, kShadowTileSizePx);
@@ -76,7 +78,7 @@ ViewSizes sizesOf(const DeviceContext& device, const ViewDesc& desc) {
         desc.visibilitySlots != 0 ? desc.visibilitySlots : tiles * kDefaultVisibilitySlotsPerTile;
     const std::uint64_t entries = std::min<std::uint64_t>({wantedEntries, largest / 4, 0x7FFFFFFFu});
     const std::uint64_t slots =
-        std::min<std::uint64_t>({wantedSlots, largest / (kVisibilitySlotWords * 4), kMaxVisibilitySlots});
+        std::min<std::uint64_t>({wantedSlots, largest / slotBytes, kMaxVisibilitySlots});
     s.poolsCapped = entries < wantedEntries || slots < wantedSlots;
     // Whole early-list words: what is left of a pool of one or two entries cannot hold a list.
     s.listEntries = static_cast<std::uint32_t>(entries / kEarlyIndicesPerWord * kEarlyIndicesPerWord);
@@ -95,7 +97,7 @@ ViewSizes sizesOf(const DeviceContext& device, const ViewDesc& desc) {
     s.bytes[kBindEarlyCounts] = tiles * 4;
     s.bytes[kBindFinalList] = std::max<VkDeviceSize>(s.listEntries, 1) * 4;
     s.bytes[kBindFinalCounts] = tiles * 4;
-    s.bytes[kBindVisibility] = VkDeviceSize(s.visibilitySlots) * kVisibilitySlotWords * 4;
+    s.bytes[kBindVisibility] = s.visibilitySlots * slotBytes;
     s.bytes[kBindEvaluateTiles] = sizeof(GpuEvaluateHead) + tiles * 4;
     s.bytes[kBindCounters] = sizeof(GpuCounters);
     return s;
@@ -286,6 +288,22 @@ Result checkFrame(const View::State& state, const FrameDesc& frame) {
     return {};
 }
 
+// Directional lights are parallel, all others meet in a point; so must their shadow views.
+Result checkProjections(const FrameDesc& frame) {
+    for (std::size_t i = 0; i < frame.view.lights.size(); ++i) {
+        const Light& light = frame.view.lights[i];
+        if (light.firstShadowView == kNoShadowViews) continue;
+        const bool parallel = light.type == LightType::Directional;
+        const std::uint32_t count = parallel ? light.cascadeCount : light.type == LightType::Point ? kPointLightFaces : 1;
+        for (const ShadowView& view : frame.shadowViews.subspan(light.firstShadowView, count)) {
+            if (view.orthographic == parallel) continue;
+            return Result::failure(Status::BadArgument, "Light %zu: its shadow views must be %s.", i,
+                                   parallel ? "orthographic" : "perspective");
+        }
+    }
+    return {};
+}
+
 void completeFrameConstants(const View::State& state, const FrameDesc& frame, GpuFrame& constants) {
     constants.pools.x = state.sizes.listEntries;
     constants.pools.y = state.sizes.visibilitySlots;
@@ -295,6 +313,8 @@ void completeFrameConstants(const View::State& state, const FrameDesc& frame, Gp
     if (frame.dropLightsFacedAway) constants.pools.w |= kFrameFacingCullBit;
     constants.shadows.x = frame.subsurfaceBiasMetres;
     constants.random.x = static_cast<std::uint32_t>(frame.frameNumber);
+    // Golden ratio: the turns of successive frames fill the circle evenly, however many there are.
+    if (frame.patternPerFrame) constants.random.y = constants.random.x * 2654435769u;
 }
 
 }  // namespace
@@ -319,7 +339,7 @@ View::~View() = default;
 
 Result View::memory(const Context& context, const ViewDesc& desc, MemoryReport& out) noexcept {
     if (Result checked = checkDesc(desc); !checked) return checked;
-    out = reportOf(desc, sizesOf(context.state().device, desc));
+    out = reportOf(desc, sizesOf(context.state(), desc));
     return {};
 }
 
@@ -331,7 +351,7 @@ Result View::create(const Context& context, const ViewDesc& desc, std::unique_pt
         state->desc = desc;
         state->desc.prepare.maxWidthPx = desc.maxWidthPx;
         state->desc.prepare.maxHeightPx = desc.maxHeightPx;
-        state->sizes = sizesOf(context.state().device, desc);
+        state->sizes = sizesOf(context.state(), desc);
         state->memory = reportOf(desc, state->sizes);
         if (Result made = Prepare::create(state->desc.prepare, state->prepare); !made) return made;
         if (Result made = createBuffers(*state); !made) return made;
@@ -374,6 +394,7 @@ Result View::beginFrame(const FrameDesc& frame, PrepareReport* report) noexcept 
     ViewInput input = frame.view;
     input.shadowViewCount = static_cast<std::uint32_t>(frame.shadowViews.size());
     if (Result prepared = state.prepare->run(input, output, slot.lights); !prepared) return prepared;
+    if (Result checked = checkProjections(frame); !checked) return checked;
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
     slot.prepareMilliseconds = elapsed.count();
     if (Result converted =

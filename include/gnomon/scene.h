@@ -48,13 +48,13 @@ struct Light {
     float intensity = 1.0f;
     /// Spot: half-angle of the cone in radians, above 0 and below pi/2 (checked: at most 1.55).
     float outerConeAngle = 0.785398163f;
-    /// Radius of the source in metres; directional lights: angular radius in radians. Drives the penumbra.
+    /// Radius of the source in metres; directional lights: angular radius in radians, at most 0.5. Drives the penumbra.
     float sourceRadius = 0.0f;
     /// The light fades from full at fadeStart to nothing at fadeEnd metres between camera and light. Ignored for
     /// directional lights. The end may not be before the start.
     float fadeStartMetres = std::numeric_limits<float>::infinity();
     float fadeEndMetres = std::numeric_limits<float>::infinity();
-    /// Likewise its shadow; beyond the end the light casts none.
+    /// Likewise its shadow; beyond the end the light casts none. Directional lights: metres between camera and pixel.
     float shadowFadeStartMetres = std::numeric_limits<float>::infinity();
     float shadowFadeEndMetres = std::numeric_limits<float>::infinity();
     /// Depth bias in metres. Source: the paper, section 4.2, uses 2 mm.
@@ -62,12 +62,14 @@ struct Light {
     /// Multiplies the light's importance where more than 1024 lights compete.
     float priority = 1.0f;
     /// Index of the light's first ShadowView (point lights: of six in a row, +X -X +Y -Y +Z -Z), or kNoShadowViews for
-    /// a light that casts no shadow. Ignored for directional lights, which cast none yet.
+    /// a light that casts no shadow. Directional lights: of cascadeCount in a row, from the nearest cascade on.
     std::uint32_t firstShadowView = kNoShadowViews;
+    /// Directional lights with shadow views: 1 to 8.
+    std::uint32_t cascadeCount = 0;
 };
 
 /// One view of a light, drawn by the host into a rectangle of one of its shadow atlases (D32 or D16, any age).
-/// A spot needs one view that holds its cone; a point light six, of 90 degrees or a little more: where the rectangle
+/// A spot needs one view that holds its cone; a directional light one orthographic view per cascade; a point light six, of 90 degrees or a little more: where the rectangle
 /// reaches a few texels beyond 90 degrees, filters are seamless across faces.
 struct ShadowView {
     /// Perspective: clip w is the distance along the view's axis in metres.

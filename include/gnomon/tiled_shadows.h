@@ -32,7 +32,17 @@ enum class Filter : std::uint8_t {
     Hard,  ///< one texel, one comparison
     Pcf,   ///< percentage closer filtering over (2 * pcfRadius + 1)^2 bilinear comparisons
     Off,   ///< no shadow at all: what the lists cost by themselves
+    Pcss,  ///< percentage closer soft shadows: a penumbra as wide as the light's source makes it
 };
+
+/// Taps of Filter::Pcss. A pixel without a blocker takes searchTaps texels, one in penumbra also filterTaps gathers.
+struct PcssTaps {
+    std::uint32_t searchTaps = 16;  ///< 1 to 64
+    std::uint32_t filterTaps = 24;  ///< 1 to 64
+};
+inline constexpr PcssTaps kPcssLow = {8, 12};
+inline constexpr PcssTaps kPcssMedium = {16, 24};
+inline constexpr PcssTaps kPcssHigh = {32, 64};
 
 /// How space in the light lists is given out.
 enum class ListReservation : std::uint8_t {
@@ -56,8 +66,11 @@ struct ContextDesc {
     bool debugLabels = false;
     /// 0: the device's own choice. Else 4, 8, 16, 32 or 64, which the device must support.
     std::uint32_t subgroupSize = 0;
-    Filter filter = Filter::Pcf;
+    Filter filter = Filter::Pcss;
     std::uint32_t pcfRadius = 1;  ///< texels, 1 to 3
+    PcssTaps pcss = kPcssMedium;
+    /// Bits of a pixel's visibility in a slot: 8, or 4 for half the memory and an error of up to 0.066.
+    std::uint32_t visibilityBits = 8;
     ListReservation listReservation = ListReservation::Accurate;
     std::uint32_t fixedListEntriesPerTile = 0;  ///< for ListReservation::Fixed, 1 to 1024
     /// The host gives a two-channel pyramid level (min, max device depth per 8x8 tile) instead of having one built.
@@ -80,7 +93,7 @@ public:
     [[nodiscard]] VkDescriptorSetLayout receiversSetLayout() const noexcept;
     [[nodiscard]] VkDescriptorSetLayout shadowmapsSetLayout() const noexcept;
     [[nodiscard]] std::uint32_t subgroupSize() const noexcept;
-    /// For pipelines of the host that include src/shading: the values of specialization constants 0 to 4, in order.
+    /// For pipelines of the host that include src/shading: the values of specialization constants 0 to 7, in order.
     [[nodiscard]] std::span<const std::uint32_t> specializationValues() const noexcept;
 
     struct State;
@@ -150,6 +163,8 @@ struct FrameDesc {
     HostImage depthPyramid;
     std::span<const ShadowAtlas> atlases;  ///< up to 4
     float subsurfaceBiasMetres = 0.02f;
+    /// Turns the sample pattern of Filter::Pcss from frame to frame, for hosts that accumulate frames.
+    bool patternPerFrame = false;
     bool dropLightsFacedAway = true;  ///< phase 3 drops lights that every pixel of a tile looks away from
 };
 

@@ -63,7 +63,7 @@ void testPixels(Receiver receiver, uint groups) {
             vec3 toLight;
             bool reached = receiver.valid && lightReaches(light, receiver.positionWs, receiver.mask, toLight);
             // A faded shadow lets some light through even where the face looks away.
-            bool dark = casts && light.shadowFade >= 1.0;
+            bool dark = casts && (light.typeAndFlags & kLightShadowFadesBit) == 0u;
             if (reached && dark && cullFacing) reached = facesLight(receiver.faceNormalWs, toLight);
             found |= (reached ? 1u : 0u) << bit;
             casting |= (casts ? 1u : 0u) << bit;

@@ -44,7 +44,8 @@ GNOMON_CONSTANT GNOMON_UINT kZBinEmpty = 0x0000FFFFu;
 // --- Lists and visibility slots --------------------------------------------------------------------------------------
 // Early list space is given out in whole words, so list SlotIDs are multiples of three.
 GNOMON_CONSTANT GNOMON_UINT kEarlyIndicesPerWord = 3u;
-GNOMON_CONSTANT GNOMON_UINT kVisibilitySlotWords = 16u;  // 64 pixels x 8 bits
+GNOMON_CONSTANT GNOMON_UINT kMaxVisibilityBits = 8u;  // of a pixel in a slot: 8, or 4
+GNOMON_CONSTANT GNOMON_UINT kMinVisibilityBits = 4u;
 GNOMON_CONSTANT GNOMON_UINT kDefaultListEntriesPerTile = 8u;
 GNOMON_CONSTANT GNOMON_UINT kDefaultVisibilitySlotsPerTile = 8u;
 // Flags that stand in place of a 22-bit VisibilitySlotID. Slots are below the lowest of them.
@@ -63,9 +64,15 @@ GNOMON_CONSTANT GNOMON_UINT kLightSpot = 1u;
 GNOMON_CONSTANT GNOMON_UINT kLightDirectional = 2u;
 GNOMON_CONSTANT GNOMON_UINT kLightTypeMask = 3u;
 GNOMON_CONSTANT GNOMON_UINT kLightCastsBit = 4u;
+// The shadow lets some light through, here or farther away: faces that look away may not be taken for dark.
+GNOMON_CONSTANT GNOMON_UINT kLightShadowFadesBit = 8u;
+// Directional lights: number of cascades.
+GNOMON_CONSTANT GNOMON_UINT kLightCascadesShift = 8u;
+GNOMON_CONSTANT GNOMON_UINT kLightCascadesMask = 0xFu;
 // shadowView of a light that casts no shadow.
 GNOMON_CONSTANT GNOMON_UINT kNoShadowView = 0xFFFFFFFFu;
 GNOMON_CONSTANT GNOMON_UINT kPointLightFaces = 6u;
+GNOMON_CONSTANT GNOMON_UINT kMaxCascades = 8u;
 
 // --- Shadowmaps ------------------------------------------------------------------------------------------------------
 GNOMON_CONSTANT GNOMON_UINT kMaxShadowAtlases = 4u;
@@ -74,11 +81,17 @@ GNOMON_CONSTANT GNOMON_UINT kShadowViewReversedZBit = 2u;
 GNOMON_CONSTANT GNOMON_UINT kMaxPcfRadius = 3u;
 // Smallest side of a shadow view's rectangle: the widest PCF kernel must fit.
 GNOMON_CONSTANT GNOMON_UINT kMinShadowViewSizePx = 2u * kMaxPcfRadius + 2u;
+// Texels of a cascade's border that no receiver uses: what a bilinear tap and the snapping to texels may need.
+GNOMON_CONSTANT GNOMON_UINT kCascadeMarginPx = 4u;
+GNOMON_CONSTANT GNOMON_UINT kMaxPcssTaps = 64u;
+// A penumbra is never wider than this radius in texels; what a source asks for beyond is cut.
+GNOMON_CONSTANT GNOMON_UINT kMaxPcssRadiusPx = 48u;
 
 // --- Visibility providers --------------------------------------------------------------------------------------------
 GNOMON_CONSTANT GNOMON_UINT kProviderHard = 0u;
 GNOMON_CONSTANT GNOMON_UINT kProviderPcf = 1u;
 GNOMON_CONSTANT GNOMON_UINT kProviderOff = 2u;  // every light lit everywhere: the price of the lists alone
+GNOMON_CONSTANT GNOMON_UINT kProviderPcss = 3u;
 
 // --- Frame flags -----------------------------------------------------------------------------------------------------
 GNOMON_CONSTANT GNOMON_UINT kFrameOrthographicBit = 1u;
@@ -109,6 +122,9 @@ GNOMON_CONSTANT GNOMON_UINT kSpecProvider = 1u;          // kProviderHard ...
 GNOMON_CONSTANT GNOMON_UINT kSpecListReservation = 2u;   // kReserveApproximate ...
 GNOMON_CONSTANT GNOMON_UINT kSpecPcfRadius = 3u;         // texels, 1 to kMaxPcfRadius
 GNOMON_CONSTANT GNOMON_UINT kSpecHostDepthPyramid = 4u;  // 1: tile depth ranges come from the host's own pyramid
+GNOMON_CONSTANT GNOMON_UINT kSpecPcssSearchTaps = 5u;    // 1 to kMaxPcssTaps
+GNOMON_CONSTANT GNOMON_UINT kSpecPcssFilterTaps = 6u;    // 1 to kMaxPcssTaps
+GNOMON_CONSTANT GNOMON_UINT kSpecVisibilityBits = 7u;    // 8 or 4
 GNOMON_CONSTANT GNOMON_UINT kSpecFirstFree = 16u;        // a host's own constants start here
 
 // --- Descriptor bindings ---------------------------------------------------------------------------------------------

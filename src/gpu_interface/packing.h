@@ -34,6 +34,11 @@ GNOMON_FN uint packFinalEntry(uint lightIndex, uint slotOrFlag) { return lightIn
 GNOMON_FN uint finalLightIndex(uint entry) { return entry & (kMaxLightsPerView - 1u); }
 GNOMON_FN uint finalSlotOrFlag(uint entry) { return entry >> kLightIndexBits; }
 
+// A slot of 64 pixels with 8 or 4 bits each: 16 or 8 words.
+GNOMON_FN uint visibilitySlotWords(uint bits) { return kWorkGroupSize * bits / 32u; }
+// Largest value that `bits` bits store: fully lit.
+GNOMON_FN uint visibilityLevels(uint bits) { return (1u << bits) - 1u; }
+
 // Lane of a pixel in its tile (or of a shadow tile in its group) in Morton order; x and y in 0..7.
 GNOMON_FN uint mortonLane(uint x, uint y) {
     return (x & 1u) | ((y & 1u) << 1u) | ((x & 2u) << 1u) | ((y & 2u) << 2u) | ((x & 4u) << 2u) | ((y & 4u) << 3u);

@@ -35,13 +35,13 @@ struct GpuLight {
     float rangeMetres;   // no influence beyond; 3.0e38 for directional lights
     vec3 directionWs;    // unit, from the light into the scene (spot axis, directional light's travel); 0 for points
     float cosOuter;      // spot: cosine of the half-angle of the cone; else -2
-    vec3 positionVs;     // metres
+    vec3 positionVs;     // metres; directional: x, y: the shadow's fade, saturate(x * distance to the eye + y)
     float sinOuter;      // spot: sine of the half-angle; else 0
     vec3 directionVs;    // unit
-    float sourceRadius;  // metres; directional: angular radius in radians
-    uint typeAndFlags;   // kLightPoint ..., kLightCastsBit
+    float sourceRadius;  // metres; directional: tangent of the angular radius
+    uint typeAndFlags;   // kLightPoint ..., kLightCastsBit, kLightShadowFadesBit, cascades
     uint lightMask;      // low 8 bits; the light reaches a receiver iff (lightMask & receiverMask) != 0
-    uint shadowView;     // first shadow view (points: of six, +X -X +Y -Y +Z -Z), or kNoShadowView
+    uint shadowView;     // first shadow view (points: of six, +X -X +Y -Y +Z -Z; cascades: nearest), or kNoShadowView
     uint hostIndex;      // index into the light array that the host gave
     float lightFade;     // above 0 to 1, multiplies the light
     float shadowFade;    // 0..1, visibility = 1 - shadowFade * (1 - visibility)
@@ -60,10 +60,8 @@ struct GpuShadowView {
     float depthFromLinearB;
     uint flags;             // kShadowViewOrthographicBit, kShadowViewReversedZBit
     uint atlasAndLayer;     // atlas in the low 8 bits, layer above
-    float texelMetres;      // size of a texel: at linear depth 1 m (perspective) or anywhere (orthographic)
-    float atlasPerTexelX;   // 1 / atlas width
-    float atlasPerTexelY;   // 1 / atlas height
-    float reserved;
+    vec2 pxPerMetre;        // texels per metre at linear depth 1 m (perspective) or anywhere (orthographic)
+    vec2 atlasPerTexel;     // 1 / atlas width, 1 / atlas height
 };
 
 // Constants of one frame and view.
@@ -80,7 +78,7 @@ struct GpuFrame {
     uvec4 lightCounts;         // x all lights, y directional lights, z mask tiles per row, w mask tile rows
     uvec4 pools;               // x list entries, y visibility slots, z fixed entries per tile (debugging), w frame flags
     vec4 shadows;              // x subsurface bias (m); yzw unused
-    uvec4 random;              // x frame number, low 32 bits; yzw unused
+    uvec4 random;              // x frame number, low 32 bits; y turns the filters' pattern, 2^32 to a turn; zw unused
 };
 
 // What the passes count, written with atomics, cleared at the start of every frame.

@@ -25,6 +25,7 @@ namespace {
 constexpr double kDirectionalRange = 3.0e38;  // metres; what structs.h states
 constexpr float kLargestCoordinate = 1e9f;    // metres; squares of it are far from a float's end
 constexpr float kLargestConeAngle = 1.55f;    // radians; what scene.h states
+constexpr float kLargestAngularRadius = 0.5f;  // radians; what scene.h states
 
 Vec3 toVec3(const float* f) {
     return {f[0], f[1], f[2]};
@@ -71,13 +72,21 @@ const char* whatIsWrong(const Light& light, std::uint32_t shadowViewCount) {
     if (local && !fadeInOrder(light.fadeStartMetres, light.fadeEndMetres)) {
         return "its fadeEndMetres must be at least fadeStartMetres and 0";
     }
-    if (local && !fadeInOrder(light.shadowFadeStartMetres, light.shadowFadeEndMetres)) {
+    if (!fadeInOrder(light.shadowFadeStartMetres, light.shadowFadeEndMetres)) {
         return "its shadowFadeEndMetres must be at least shadowFadeStartMetres and 0";
     }
-    if (local && light.firstShadowView != kNoShadowViews) {
-        const std::uint32_t needed = light.type == LightType::Point ? gpu::kPointLightFaces : 1u;
+    if (light.firstShadowView != kNoShadowViews) {
+        if (!local && (light.cascadeCount < 1 || light.cascadeCount > gpu::kMaxCascades)) {
+            return "its cascadeCount must be 1 to 8, as it is directional and has shadow views";
+        }
+        if (!local && light.sourceRadius > kLargestAngularRadius) {
+            return "its sourceRadius, an angle as it is directional, must be at most 0.5 radians";
+        }
+        const std::uint32_t needed = local ? light.type == LightType::Point ? gpu::kPointLightFaces : 1u
+                                           : light.cascadeCount;
         if (needed > shadowViewCount || light.firstShadowView > shadowViewCount - needed) {
-            return "its firstShadowView is out of bounds (a point light needs six views, a spot one)";
+            return "its firstShadowView is out of bounds (a point light needs six views, a spot one, a directional "
+                   "light cascadeCount)";
         }
     }
     return nullptr;
@@ -134,6 +143,20 @@ void fillDirectional(const Light& light, const ViewCamera& camera, VisibleLight&
     out.gpu.directionWs = toGpu(directionWs);
     out.gpu.directionVs = toGpu(camera.directionVs(directionWs));
     out.gpu.lightFade = 1.0f;
+    if (light.firstShadowView == kNoShadowViews) return;
+    // fade() as saturate(x * distance + y); a step, where it starts and ends at once, falls within a millimetre.
+    const double start = light.shadowFadeStartMetres, end = light.shadowFadeEndMetres;
+    double scale = 0.0, offset = 1.0;
+    if (std::isfinite(end)) {
+        scale = -1.0 / std::max(end - start, 1e-3);
+        offset = -end * scale;
+        out.gpu.typeAndFlags |= gpu::kLightShadowFadesBit;
+    }
+    out.gpu.positionVs = {static_cast<float>(scale), static_cast<float>(offset), 0.0f};
+    out.gpu.sourceRadius = static_cast<float>(std::tan(static_cast<double>(light.sourceRadius)));
+    out.gpu.typeAndFlags |= gpu::kLightCastsBit | light.cascadeCount << gpu::kLightCascadesShift;
+    out.gpu.shadowView = light.firstShadowView;
+    out.gpu.shadowFade = 1.0f;
 }
 
 void fillLocal(const Light& light, const ViewCamera& camera, const PrepareDesc& desc, VisibleLight& out) {
@@ -161,6 +184,7 @@ void fillLocal(const Light& light, const ViewCamera& camera, const PrepareDesc& 
         g.shadowFade = static_cast<float>(fade(distance, light.shadowFadeStartMetres, light.shadowFadeEndMetres));
         if (g.shadowFade > 0.0f) {
             g.typeAndFlags |= gpu::kLightCastsBit;
+            if (g.shadowFade < 1.0f) g.typeAndFlags |= gpu::kLightShadowFadesBit;
             g.shadowView = light.firstShadowView;
         }
     }

@@ -12,6 +12,7 @@ namespace gnomon::app {
 namespace {
 
 constexpr std::uint32_t kMostPoolEntries = 1u << 30;
+constexpr std::uint32_t kMostTaps = 64;
 
 // All of `text` as a number from 1 to kMostPixelsAcross; 0 otherwise.
 std::uint32_t pixelsAcross(std::string_view text) {
@@ -19,6 +20,25 @@ std::uint32_t pixelsAcross(std::string_view text) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool good = error == std::errc() && end == text.data() + text.size() && value <= kMostPixelsAcross;
     return good ? value : 0;
+}
+
+PcssTaps parseTaps(const std::string& text) {
+    if (text == "low") return kPcssLow;
+    if (text == "medium") return kPcssMedium;
+    if (text == "high") return kPcssHigh;
+    const std::size_t comma = text.find(',');
+    PcssTaps taps = {0, 0};
+    if (comma != std::string::npos) {
+        taps.searchTaps = pixelsAcross(std::string_view(text).substr(0, comma));
+        taps.filterTaps = pixelsAcross(std::string_view(text).substr(comma + 1));
+    }
+    const auto good = [](std::uint32_t count) { return count >= 1 && count <= kMostTaps; };
+    if (!good(taps.searchTaps) || !good(taps.filterTaps))
+        throw UsageError(
+            fmt::format("'{}' are no taps: give low, medium, high or SEARCH,FILTER as in 16,24, each from "
+                        "1 to {}.",
+                        text, kMostTaps));
+    return taps;
 }
 
 void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
@@ -48,6 +68,14 @@ void addSettings(CLI::App& command, Settings& s) {
         ->check(CLI::IsMember({"hard", "pcf", "pcss"}))
         ->capture_default_str();
     command.add_option("--pcf-radius", s.pcfRadius, "Texels")->check(CLI::Range(1, 3))->capture_default_str();
+    command
+        .add_option("--pcss-taps", s.taps,
+                    "low, medium, high, or SEARCH,FILTER: texels of the search and taps of the filter, as in 16,24")
+        ->capture_default_str();
+    command.add_flag("--pattern-per-frame", s.patternPerFrame, "Turn the sample pattern of pcss from frame to frame");
+    command.add_option("--visibility-bits", s.visibilityBits, "Bits of a pixel's visibility in a slot")
+        ->check(CLI::IsMember({4, 8}))
+        ->capture_default_str();
     command.add_option("--device", s.device, "Index or part of the name of a Vulkan device (see: gnomon devices)");
     command.add_flag("--validate", s.validate, "Run under the validation layers; any message is a failure");
     command.add_flag_callback("--quiet", silenceProgress, "No progress on stderr");
@@ -71,9 +99,11 @@ void addSettings(CLI::App& command, Settings& s) {
 renderer::RendererDesc rendererDescOf(const Settings& s) {
     renderer::RendererDesc desc;
     parseSize(s.size, desc.widthPx, desc.heightPx);
-    if (s.filter == "pcss") throw UsageError("The filter 'pcss' is not available yet; choose hard or pcf.");
-    desc.filter = s.filter == "hard" ? Filter::Hard : Filter::Pcf;
+    desc.filter = s.filter == "hard" ? Filter::Hard : s.filter == "pcf" ? Filter::Pcf : Filter::Pcss;
     desc.pcfRadius = s.pcfRadius;
+    desc.pcss = parseTaps(s.taps);
+    desc.patternPerFrame = s.patternPerFrame;
+    desc.visibilityBits = s.visibilityBits;
     desc.listReservation = s.reservation == "accurate" ? ListReservation::Accurate
                            : s.reservation == "fixed"  ? ListReservation::Fixed
                                                        : ListReservation::Approximate;

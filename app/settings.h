@@ -19,8 +19,11 @@ struct Settings {
     std::string camera = "default";
     std::uint32_t lights = 0;
     std::uint64_t seed = 1;
-    std::string filter = "pcf";
+    std::string filter = "pcss";
     std::uint32_t pcfRadius = 1;
+    std::string taps = "medium";
+    bool patternPerFrame = false;
+    std::uint32_t visibilityBits = 8;
     std::string device;
     bool validate = false;
     std::uint32_t listEntries = 0, visibilitySlots = 0;

@@ -40,6 +40,8 @@ std::unique_ptr<Context> makeContext(const Device& device, const RendererDesc& d
     c.subgroupSize = desc.subgroupSize;
     c.filter = desc.filter;
     c.pcfRadius = desc.pcfRadius;
+    c.pcss = desc.pcss;
+    c.visibilityBits = desc.visibilityBits;
     c.listReservation = desc.listReservation;
     c.fixedListEntriesPerTile = desc.fixedListEntriesPerTile;
     std::unique_ptr<Context> context;
@@ -72,7 +74,8 @@ LightType typeOf(LightKind kind) {
     return LightType::Point;
 }
 
-Light lightOf(const SceneLight& light, const glm::dvec3& origin, std::uint32_t firstShadowView) {
+Light lightOf(const SceneLight& light, const glm::dvec3& origin, std::uint32_t firstShadowView,
+              std::uint32_t cascadeCount) {
     Light l;
     l.type = typeOf(light.kind);
     const glm::vec3 position(glm::dvec3(light.position) - origin);
@@ -83,26 +86,41 @@ Light lightOf(const SceneLight& light, const glm::dvec3& origin, std::uint32_t f
     l.outerConeAngle = std::min(light.outerConeAngle, 1.55f);
     l.sourceRadius = light.sourceRadius;
     l.firstShadowView = firstShadowView;
+    l.cascadeCount = cascadeCount;
     return l;
 }
 
 ShadowPlanCamera planCameraOf(const SceneCamera& camera, const GBufferCamera& gbuffer, const glm::dvec3& origin,
-                              std::uint32_t heightPx) {
+                              std::uint32_t widthPx, std::uint32_t heightPx) {
     ShadowPlanCamera c;
     c.position = glm::dvec3(camera.worldFromCamera[3]);
     c.pixelsPerRadian = static_cast<float>(heightPx) / (2.0f * std::tan(0.5f * camera.verticalFieldOfView));
     c.orthographic = camera.orthographic;
     c.pixelsPerMetre = static_cast<float>(heightPx) / (2.0f * std::max(camera.orthographicHalfHeight, 1e-6f));
     c.frustum = cullVolumeOf(gbuffer.clipFromWorld, origin);
+    const double aspect = static_cast<double>(widthPx) / heightPx;
+    const double tangent = std::tan(0.5 * static_cast<double>(camera.verticalFieldOfView));
+    c.cascades.position = c.position;
+    c.cascades.forward = -glm::normalize(glm::dvec3(camera.worldFromCamera[2]));
+    c.cascades.tangent = tangent * std::hypot(aspect, 1.0);
+    if (camera.orthographic)
+        c.cascades.halfDiagonalMetres = static_cast<double>(camera.orthographicHalfHeight) * std::hypot(aspect, 1.0);
     return c;
 }
 
-ShadowPlanSettings planSettingsOf(const Device& device, const RendererDesc& desc) {
+ShadowPlanSettings planSettingsOf(const Device& device, const Scene& scene, const RendererDesc& desc) {
     ShadowPlanSettings settings;
     const std::uint32_t largest = std::bit_floor(device.limits().maxFramebufferWidth);
     const std::uint32_t wanted =
         desc.atlasSizePx != 0 ? desc.atlasSizePx : ShadowAtlasImage::defaultSizePx(device, desc.heightPx);
     settings.atlasSizePx = std::min(std::bit_floor(wanted), largest);
+    const Bounds bounds = worldBounds(scene);
+    if (!bounds.empty()) {
+        // Room for what moves, and no box of zero depth.
+        const double radius = bounds.radius();
+        settings.casters = {glm::dvec3(bounds.centre()), 1.05 * radius + 1e-3};
+        settings.cascades.reachMetres = static_cast<float>(std::max(200.0, 2.0 * radius));
+    }
     return settings;
 }
 
@@ -138,7 +156,7 @@ struct Renderer::State {
           view(makeView(*context, r)),
           scene(d, s),
           gbuffer(d, scene, r.widthPx, r.heightPx),
-          planner(planSettingsOf(d, r)),
+          planner(planSettingsOf(d, s, r)),
           atlas(d, scene, planner.settings().atlasSizePx),
           lighting(d, *context, s, gbuffer, r.quantiseInline),
           timer(d, kFramesInFlight),
@@ -146,7 +164,7 @@ struct Renderer::State {
         std::ranges::transform(sceneLights, std::back_inserter(shadowLights), shadowLightOf);
     }
 
-    std::vector<Light> lightsOf(const glm::dvec3& origin, std::span<const std::uint32_t> firstViews) const;
+    std::vector<Light> lightsOf(const glm::dvec3& origin, const ShadowPlan& plan) const;
     void selectCasters(const Camera& camera, const glm::dvec3& origin);
     void beginView(const Camera& camera, const glm::dvec3& origin, const ShadowPlan& plan);
     void recordPasses(VkCommandBuffer c, const GBufferCamera& camera, const ShadowPlan& plan, ShadowMode mode,
@@ -160,13 +178,13 @@ Renderer::~Renderer() {
     if (state_ != nullptr) state_->device.waitIdle();
 }
 
-std::vector<Light> Renderer::State::lightsOf(const glm::dvec3& origin,
-                                             std::span<const std::uint32_t> firstViews) const {
+std::vector<Light> Renderer::State::lightsOf(const glm::dvec3& origin, const ShadowPlan& plan) const {
     std::vector<Light> lights;
     lights.reserve(sceneLights.size());
     for (std::size_t i = 0; i < sceneLights.size(); ++i) {
-        const std::uint32_t first = firstViews.empty() || !sceneLights[i].casts ? kNoShadowViews : firstViews[i];
-        lights.push_back(lightOf(sceneLights[i], origin, first));
+        const bool none = plan.firstView.empty() || !sceneLights[i].casts;
+        const std::uint32_t first = none ? kNoShadowViews : plan.firstView[i];
+        lights.push_back(lightOf(sceneLights[i], origin, first, plan.cascadeCount));
     }
     return lights;
 }
@@ -201,7 +219,7 @@ void Renderer::State::selectCasters(const Camera& camera, const glm::dvec3& orig
 
 // Phase 1 and everything else the library wants to know of the frame.
 void Renderer::State::beginView(const Camera& camera, const glm::dvec3& origin, const ShadowPlan& plan) {
-    const std::vector<Light> lights = lightsOf(origin, plan.firstView);
+    const std::vector<Light> lights = lightsOf(origin, plan);
     std::vector<ShadowView> views;
     views.reserve(plan.views.size());
     for (const PlannedView& planned : plan.views) views.push_back(planned.view);
@@ -217,6 +235,7 @@ void Renderer::State::beginView(const Camera& camera, const glm::dvec3& origin, 
     frame.faceNormals = {gbuffer.view(GBuffer::FaceNormal)};
     frame.receiverFlags = {gbuffer.view(GBuffer::Receiver)};
     frame.atlases = atlases;
+    frame.patternPerFrame = desc.patternPerFrame;
     require(view->beginFrame(frame));
 }
 
@@ -261,8 +280,8 @@ std::uint64_t Renderer::renderFrame(const SceneCamera& sceneCamera, ShadowMode m
     const GBufferCamera gbufferCamera = gbufferCameraOf(camera);
     s.scene.recordTransforms(c, origin);
     s.selectCasters(camera, origin);
-    const ShadowPlan plan =
-        s.planner.plan(s.shadowLights, planCameraOf(sceneCamera, gbufferCamera, origin, s.desc.heightPx), origin);
+    const ShadowPlan plan = s.planner.plan(
+        s.shadowLights, planCameraOf(sceneCamera, gbufferCamera, origin, s.desc.widthPx, s.desc.heightPx), origin);
     s.beginView(camera, origin, plan);
 
     State::Known& known = s.known[number % kFramesInFlight];

@@ -19,8 +19,11 @@ enum class ShadowMode : std::uint8_t { Deferred, Inline, Off };
 
 struct RendererDesc {
     std::uint32_t widthPx = 1280, heightPx = 720;
-    Filter filter = Filter::Pcf;
+    Filter filter = Filter::Pcss;
     std::uint32_t pcfRadius = 1;
+    PcssTaps pcss = kPcssMedium;
+    bool patternPerFrame = false;
+    std::uint32_t visibilityBits = 8;
     ListReservation listReservation = ListReservation::Accurate;
     std::uint32_t fixedListEntriesPerTile = 32;          // with ListReservation::Fixed
     std::uint32_t subgroupSize = 0;                      // 0: the device's own

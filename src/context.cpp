@@ -241,10 +241,14 @@ Result Context::create(const ContextDesc& desc, std::unique_ptr<Context>& out) n
         state->desc = desc;
         readDevice(*state, desc);
         state->desc.queueFamilies = {};  // the caller's memory; copied by readDevice
-        const std::uint32_t values[] = {state->subgroupSize, providerOf(desc.filter),
-                                        reservationOf(desc.listReservation), desc.pcfRadius,
-                                        desc.hostDepthPyramid ? 1u : 0u, desc.pcss.searchTaps,
-                                        desc.pcss.filterTaps, desc.visibilityBits};
+        const std::uint32_t values[] = {state->subgroupSize,
+                                        providerOf(desc.filter),
+                                        reservationOf(desc.listReservation),
+                                        desc.pcfRadius,
+                                        desc.hostDepthPyramid ? 1u : 0u,
+                                        desc.pcss.searchTaps,
+                                        desc.pcss.filterTaps,
+                                        desc.visibilityBits};
         static_assert(kSpecSubgroupSize == 0 && kSpecProvider == 1 && kSpecListReservation == 2 &&
                       kSpecPcfRadius == 3 && kSpecHostDepthPyramid == 4 && kSpecPcssSearchTaps == 5 &&
                       kSpecPcssFilterTaps == 6 && kSpecVisibilityBits == 7);

@@ -77,8 +77,7 @@ ViewSizes sizesOf(const Context::State& context, const ViewDesc& desc) {
     const std::uint64_t wantedSlots =
         desc.visibilitySlots != 0 ? desc.visibilitySlots : tiles * kDefaultVisibilitySlotsPerTile;
     const std::uint64_t entries = std::min<std::uint64_t>({wantedEntries, largest / 4, 0x7FFFFFFFu});
-    const std::uint64_t slots =
-        std::min<std::uint64_t>({wantedSlots, largest / slotBytes, kMaxVisibilitySlots});
+    const std::uint64_t slots = std::min<std::uint64_t>({wantedSlots, largest / slotBytes, kMaxVisibilitySlots});
     s.poolsCapped = entries < wantedEntries || slots < wantedSlots;
     // Whole early-list words: what is left of a pool of one or two entries cannot hold a list.
     s.listEntries = static_cast<std::uint32_t>(entries / kEarlyIndicesPerWord * kEarlyIndicesPerWord);
@@ -294,7 +293,9 @@ Result checkProjections(const FrameDesc& frame) {
         const Light& light = frame.view.lights[i];
         if (light.firstShadowView == kNoShadowViews) continue;
         const bool parallel = light.type == LightType::Directional;
-        const std::uint32_t count = parallel ? light.cascadeCount : light.type == LightType::Point ? kPointLightFaces : 1;
+        const std::uint32_t count = parallel                         ? light.cascadeCount
+                                    : light.type == LightType::Point ? kPointLightFaces
+                                                                     : 1;
         for (const ShadowView& view : frame.shadowViews.subspan(light.firstShadowView, count)) {
             if (view.orthographic == parallel) continue;
             return Result::failure(Status::BadArgument, "Light %zu: its shadow views must be %s.", i,

@@ -16,10 +16,8 @@ namespace {
 constexpr float kHysteresisLog2 = 0.75f;
 // What is outside of the camera's frustum counts this much less when squares are shrunk.
 constexpr float kUnseenImportance = 0.125f;
-
-std::uint32_t facesOf(LightKind kind) {
-    return kind == LightKind::Point ? 6u : 1u;
-}
+// A directional light is everywhere on the screen; shrunk only after everything else.
+constexpr float kCascadeImportance = 1e5f;
 
 struct Sphere {
     glm::dvec3 centre;
@@ -41,7 +39,7 @@ ShadowLight shadowLightOf(const SceneLight& light) {
     out.kind = light.kind;
     out.position = glm::dvec3(light.position);
     out.direction = glm::normalize(light.direction);
-    out.rangeMetres = light.rangeMetres;
+    out.rangeMetres = light.kind == LightKind::Directional ? 1e30f : light.rangeMetres;  // reaches everything
     out.outerConeAngle = light.outerConeAngle;
     out.casts = light.casts;
     return out;
@@ -83,33 +81,46 @@ struct ShadowPlanner::Wish {
     float importance;
 };
 
+ShadowPlanner::Wish ShadowPlanner::wishOfLocal(std::uint32_t index, const ShadowLight& light,
+                                               const ShadowPlanCamera& camera) {
+    const Sphere reach = reachOf(light);
+    const auto distance = static_cast<float>(glm::length(reach.centre - camera.position));
+    float diameterPx = 2.0f * reach.radius * camera.pixelsPerMetre;
+    if (!camera.orthographic) {
+        // Inside the sphere it fills the view; the nearest point of interest is taken no nearer than half a radius.
+        diameterPx = 2.0f * reach.radius * camera.pixelsPerRadian / std::max(distance, 0.5f * reach.radius);
+    }
+    const bool point = light.kind == LightKind::Point;
+    const std::uint32_t low = point ? settings_.minFacePx : settings_.minSpotPx;
+    const std::uint32_t high = std::min(point ? settings_.maxFacePx : settings_.maxSpotPx, settings_.atlasSizePx);
+    const float wishLog2 =
+        std::log2(std::clamp(diameterPx * settings_.texelsPerPixel, static_cast<float>(low), static_cast<float>(high)));
+    auto [known, isNew] = wishedLog2_.try_emplace(index, static_cast<std::uint32_t>(std::lround(wishLog2)));
+    if (std::abs(wishLog2 - static_cast<float>(known->second)) > kHysteresisLog2) {
+        known->second = static_cast<std::uint32_t>(std::lround(wishLog2));
+    }
+    const std::uint32_t size = std::clamp(1u << known->second, low, high);
+    const bool seen = camera.frustum.planeCount == 0 || camera.frustum.mayHold(reach.centre, reach.radius);
+    return {index, point ? 6u : 1u, size, size, low, diameterPx * (seen ? 1.0f : kUnseenImportance)};
+}
+
+ShadowPlanner::Wish ShadowPlanner::wishOfDirectional(std::uint32_t index) const {
+    const std::uint32_t high = std::max(std::min(settings_.maxCascadePx, settings_.atlasSizePx / 4), 1u);
+    return {index, settings_.cascades.count, high, high, std::min(settings_.minCascadePx, high), kCascadeImportance};
+}
+
 std::vector<ShadowPlanner::Wish> ShadowPlanner::wishes(std::span<const ShadowLight> lights,
                                                        const ShadowPlanCamera& camera) {
     std::vector<Wish> out;
     for (std::uint32_t l = 0; l < lights.size(); ++l) {
         const ShadowLight& light = lights[l];
-        const bool usable = light.casts && light.kind != LightKind::Directional && light.rangeMetres > 0.0f &&
-                            std::isfinite(light.rangeMetres) && light.outerConeAngle > 0.0f;
-        if (!usable) continue;
-        const Sphere reach = reachOf(light);
-        const auto distance = static_cast<float>(glm::length(reach.centre - camera.position));
-        float diameterPx = 2.0f * reach.radius * camera.pixelsPerMetre;
-        if (!camera.orthographic) {
-            // Inside the sphere it fills the view; the nearest point of interest is taken no nearer than half a radius.
-            diameterPx = 2.0f * reach.radius * camera.pixelsPerRadian / std::max(distance, 0.5f * reach.radius);
+        if (!light.casts) continue;
+        if (light.kind == LightKind::Directional) {
+            if (settings_.casters.radius > 0.0) out.push_back(wishOfDirectional(l));
+            continue;
         }
-        const bool point = light.kind == LightKind::Point;
-        const std::uint32_t low = point ? settings_.minFacePx : settings_.minSpotPx;
-        const std::uint32_t high = std::min(point ? settings_.maxFacePx : settings_.maxSpotPx, settings_.atlasSizePx);
-        const float wishLog2 = std::log2(
-            std::clamp(diameterPx * settings_.texelsPerPixel, static_cast<float>(low), static_cast<float>(high)));
-        auto [known, isNew] = wishedLog2_.try_emplace(l, static_cast<std::uint32_t>(std::lround(wishLog2)));
-        if (std::abs(wishLog2 - static_cast<float>(known->second)) > kHysteresisLog2) {
-            known->second = static_cast<std::uint32_t>(std::lround(wishLog2));
-        }
-        const std::uint32_t size = std::clamp(1u << known->second, low, high);
-        const bool seen = camera.frustum.planeCount == 0 || camera.frustum.mayHold(reach.centre, reach.radius);
-        out.push_back({l, facesOf(light.kind), size, size, low, diameterPx * (seen ? 1.0f : kUnseenImportance)});
+        const bool usable = light.rangeMetres > 0.0f && std::isfinite(light.rangeMetres) && light.outerConeAngle > 0.0f;
+        if (usable) out.push_back(wishOfLocal(l, light, camera));
     }
     return out;
 }
@@ -152,7 +163,8 @@ void ShadowPlanner::shrinkToFit(std::vector<Wish>& wishes, ShadowPlan& plan) con
 }
 
 void ShadowPlanner::place(ShadowPlan& plan) {
-    const std::uint32_t cell = std::min({settings_.minFacePx, settings_.minSpotPx, settings_.atlasSizePx});
+    const std::uint32_t cell =
+        std::min({settings_.minFacePx, settings_.minSpotPx, settings_.minCascadePx, settings_.atlasSizePx / 4});
     const std::uint32_t side = settings_.atlasSizePx / cell, cellsPerLayer = side * side;
     std::vector<std::uint32_t> order(plan.views.size());
     for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -192,6 +204,22 @@ void ShadowPlanner::place(ShadowPlan& plan) {
     attempt(false);  // sorted by size without gaps: fits whenever the sum of areas does
 }
 
+PlannedView ShadowPlanner::planView(const Wish& wish, std::uint32_t face, const ShadowLight& light,
+                                    const ShadowPlanCamera& camera, const glm::dvec3& origin) const {
+    PlannedView planned;
+    planned.light = wish.light;
+    planned.face = face;
+    planned.size = wish.size;
+    if (light.kind == LightKind::Directional) {
+        planned.cascade =
+            cascadeAround(settings_.cascades, camera.cascades, settings_.casters, light.direction, face, wish.size);
+        planned.view = cascadeView(planned.cascade, light.direction, wish.size, origin);
+    } else {
+        planned.view = makeShadowView(light, face, wish.size, settings_.guardTexels, origin);
+    }
+    return planned;
+}
+
 ShadowPlan ShadowPlanner::plan(std::span<const ShadowLight> lights, const ShadowPlanCamera& camera,
                                const glm::dvec3& origin) {
     ShadowPlan plan;
@@ -199,16 +227,11 @@ ShadowPlan ShadowPlanner::plan(std::span<const ShadowLight> lights, const Shadow
     std::vector<Wish> granted = wishes(lights, camera);
     shrinkToFit(granted, plan);
     plan.firstView.assign(lights.size(), kNoShadowViews);
+    plan.cascadeCount = settings_.cascades.count;
     for (const Wish& wish : granted) {
         plan.firstView[wish.light] = static_cast<std::uint32_t>(plan.views.size());
-        for (std::uint32_t f = 0; f < wish.faces; ++f) {
-            PlannedView planned;
-            planned.light = wish.light;
-            planned.face = f;
-            planned.size = wish.size;
-            planned.view = makeShadowView(lights[wish.light], f, wish.size, settings_.guardTexels, origin);
-            plan.views.push_back(planned);
-        }
+        for (std::uint32_t f = 0; f < wish.faces; ++f)
+            plan.views.push_back(planView(wish, f, lights[wish.light], camera, origin));
     }
     place(plan);
     for (PlannedView& v : plan.views) {

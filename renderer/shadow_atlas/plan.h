@@ -15,13 +15,14 @@
 #include "gnomon/scene.h"
 #include "renderer/gpu/cull_volume.h"
 #include "renderer/scene/scene.h"
+#include "renderer/shadow_atlas/cascades.h"
 
 namespace gnomon::renderer {
 
 /// One light of the scene; its index in the span given to plan() identifies it from frame to frame.
 struct ShadowLight {
-    LightKind kind = LightKind::Point;  ///< directional lights get no view
-    glm::dvec3 position{0.0};           ///< world
+    LightKind kind = LightKind::Point;
+    glm::dvec3 position{0.0};  ///< world
     glm::vec3 direction{0.0f, -1.0f, 0.0f};
     float rangeMetres = 1.0f;
     float outerConeAngle = 0.785398163f;  ///< half-angle
@@ -35,6 +36,9 @@ struct ShadowPlanSettings {
     std::uint32_t guardTexels = 4;  ///< beyond 90 degrees or the cone on each side: the widest PCF kernel and one
     std::uint32_t minFacePx = 32, maxFacePx = 1024;
     std::uint32_t minSpotPx = 64, maxSpotPx = 2048;
+    std::uint32_t minCascadePx = 256, maxCascadePx = 2048;  ///< a quarter of the atlas' side at most
+    CascadeSettings cascades;
+    CasterBounds casters;         ///< directional lights get views only where there is something to cast
     float texelsPerPixel = 1.0f;  ///< of the screen, where the light's range ends
 };
 
@@ -44,18 +48,21 @@ struct ShadowPlanCamera {
     bool orthographic = false;
     float pixelsPerMetre = 100.0f;  ///< orthographic only
     CullVolume frustum;             ///< optional (no planes: everything counts as visible)
+    CascadeCamera cascades;
 };
 
-/// A square of one light; six for a point light.
+/// A square of one light; six for a point light, one per cascade for a directional light.
 struct PlannedView {
     std::uint32_t light = 0, face = 0;
     std::uint32_t x = 0, y = 0, layer = 0, size = 0;
+    Cascade cascade;  ///< directional lights
     ShadowView view;  ///< clipFromWorld relative to the frame's origin
 };
 
 struct ShadowPlan {
     std::vector<PlannedView> views;
     std::vector<std::uint32_t> firstView;  ///< per light: index into views, or kNoShadowViews
+    std::uint32_t cascadeCount = 0;        ///< of every directional light that has views
     std::uint32_t lightsShrunk = 0;        ///< got less than they wished for
     std::uint32_t halvings = 0;            ///< summed over those
     std::uint32_t lightsWithout = 0;       ///< cast no shadow, because not even the smallest squares fit
@@ -81,6 +88,10 @@ public:
 private:
     struct Wish;
     std::vector<Wish> wishes(std::span<const ShadowLight> lights, const ShadowPlanCamera& camera);
+    Wish wishOfLocal(std::uint32_t index, const ShadowLight& light, const ShadowPlanCamera& camera);
+    [[nodiscard]] Wish wishOfDirectional(std::uint32_t index) const;
+    [[nodiscard]] PlannedView planView(const Wish& wish, std::uint32_t face, const ShadowLight& light,
+                                       const ShadowPlanCamera& camera, const glm::dvec3& origin) const;
     void shrinkToFit(std::vector<Wish>& wishes, ShadowPlan& plan) const;
     void place(ShadowPlan& plan);
 

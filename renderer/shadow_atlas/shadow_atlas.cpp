@@ -69,8 +69,19 @@ ShadowAtlasImage::ShadowAtlasImage(const Device& device, const GpuScene& scene, 
 
 ShadowAtlasImage::Key ShadowAtlasImage::keyOf(const GpuScene& scene, const ShadowLight& light,
                                               const PlannedView& view) const {
-    return {light.position, light.direction, light.rangeMetres, light.outerConeAngle,   light.kind, view.face, view.x,
-            view.y,         view.layer,      view.size,         scene.castersRevision()};
+    return {light.position,
+            light.direction,
+            light.rangeMetres,
+            light.outerConeAngle,
+            light.kind,
+            view.cascade.centre,
+            view.cascade.halfExtent,
+            view.face,
+            view.x,
+            view.y,
+            view.layer,
+            view.size,
+            scene.castersRevision()};
 }
 
 void ShadowAtlasImage::findTasks(const GpuScene& scene, std::span<const ShadowLight> lights, const ShadowPlan& plan,

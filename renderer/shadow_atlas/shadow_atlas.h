@@ -49,6 +49,8 @@ private:
         glm::vec3 direction;
         float range, angle;
         LightKind kind;
+        glm::dvec3 cascadeCentre;
+        double cascadeExtent;
         std::uint32_t face, x, y, layer, size;
         std::uint64_t castersRevision;
         bool operator==(const Key&) const = default;

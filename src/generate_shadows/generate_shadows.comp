@@ -4,9 +4,9 @@
 // Problem: evaluating shadows inside the lighting shader keeps its registers and the filter's alive together.
 // Source: the paper, section 2.4, listing 4. Wholly dark: nothing is written. Wholly lit: a flag. Else a slot of 64 bytes.
 // Plain way: light after light, two votes, one slot allocation and a byte store each.
-// Here: four lights at a time. A lane's four 8-bit visibilities form one word; AND and OR of those words over the tile
-// are the eight votes; one atomic takes all slots of the batch; and since four slots are 64 words, each lane gathers and
-// stores exactly one. Two barriers per four lights. Decisions are made on the quantised values.
+// Here: four lights at a time (eight with slots of 4 bits). A lane's visibilities of them form one word; AND and OR of
+// those words over the tile are the votes; one atomic takes all slots of the batch; and since a batch's slots are 64
+// words, each lane gathers and stores exactly one. Two barriers per batch. Decisions are made on the quantised values.
 // Overflow: without a slot the entry says EVALUATE; without list space the tile has no entries. Such tiles go to the
 // indirect list of the second lighting pipeline, and nothing is lost.
 #extension GL_GOOGLE_include_directive : require
@@ -14,7 +14,10 @@
 #include "vulkan/work_group.glsl"
 #include "generate_shadows/visibility.glsl"
 
-const uint kBatch = 4u;
+const uint kBits = kVisibilityBits;
+const uint kBatch = 32u / kBits;  // lights, and pixels in a word of a slot
+const uint kLevels = kVisibilityLevels;
+const uint kSlotWords = kVisibilitySlotWords;
 
 shared uint packedVisibility[kWorkGroupSize];
 shared uint subgroupLit[kSubgroupCount];
@@ -32,7 +35,7 @@ uint earlyLight(uint slotId, uint entry) {
     return unpackEarlyIndex(earlyList[earlyWordIndex(slotId, entry)], entry);
 }
 
-// One byte per light of the batch. Pixels that the light does not reach do not vote: all ones in `lit`, zeros in `dark`.
+// One field per light of the batch. Pixels that the light does not reach do not vote: all ones in `lit`, zeros in `dark`.
 void evaluateBatch(Receiver receiver, uint slotId, uint first, uint count, out uint stored, out uint lit, out uint dark) {
     stored = 0u;
     lit = 0xFFFFFFFFu;
@@ -42,9 +45,9 @@ void evaluateBatch(Receiver receiver, uint slotId, uint first, uint count, out u
         vec3 toLight;
         if (receiver.valid && lightReaches(light, receiver.positionWs, receiver.mask, toLight)) {
             uint q = quantiseVisibility(evaluateVisibility(light, receiver, toLight));
-            stored |= q << (8u * i);
-            lit &= ~(0xFFu << (8u * i)) | (q << (8u * i));
-            dark |= q << (8u * i);
+            stored |= q << (kBits * i);
+            lit &= ~(kLevels << (kBits * i)) | (q << (kBits * i));
+            dark |= q << (kBits * i);
         }
     }
 }
@@ -56,12 +59,12 @@ void combineVotes(inout uint lit, inout uint dark) {
     }
 }
 
-// The word of its slot that this lane stores: four lanes' bytes of light lane / 16.
+// The word of its slot that this lane stores: several lanes' fields of light lane / kSlotWords.
 uint gatherWord(uint lane) {
-    uint shift = 8u * (lane / kVisibilitySlotWords);
-    uint pixel = (lane % kVisibilitySlotWords) * 4u;
+    uint shift = kBits * (lane / kSlotWords);
+    uint pixel = (lane % kSlotWords) * kBatch;
     uint word = 0u;
-    for (uint i = 0u; i < 4u; ++i) word |= (packedVisibility[pixel + i] >> shift & 0xFFu) << (8u * i);
+    for (uint i = 0u; i < kBatch; ++i) word |= (packedVisibility[pixel + i] >> shift & kLevels) << (kBits * i);
     return word;
 }
 
@@ -70,8 +73,8 @@ void classifyBatch(uint count, uint lit, uint dark, out uint slotBits, out uint 
     slotBits = 0u;
     writtenBits = 0u;
     for (uint i = 0u; i < count; ++i) {
-        bool allDark = (dark >> (8u * i) & 0xFFu) == 0u;
-        bool allLit = (lit >> (8u * i) & 0xFFu) == 0xFFu;
+        bool allDark = (dark >> (kBits * i) & kLevels) == 0u;
+        bool allLit = (lit >> (kBits * i) & kLevels) == kLevels;
         writtenBits |= (allDark ? 0u : 1u) << i;
         slotBits |= (allDark || allLit ? 0u : 1u) << i;
     }
@@ -114,10 +117,10 @@ void main() {
         if (lane == 0u && slotBits != 0u) batchSlot = atomicAdd(counters.visibilitySlots, bitCount(slotBits));
         barrier();
 
-        uint mine = lane / kVisibilitySlotWords;
+        uint mine = lane / kSlotWords;
         if ((slotBits >> mine & 1u) != 0u) {
             uint slot = batchSlot + rankOf(slotBits, mine);
-            if (slot < frame.pools.y) visibilityWords[slot * kVisibilitySlotWords + lane % kVisibilitySlotWords] = word;
+            if (slot < frame.pools.y) visibilityWords[slot * kSlotWords + lane % kSlotWords] = word;
         }
         if (lane < count && (writtenBits >> lane & 1u) != 0u) {
             uint slot = kSlotAllLit;

@@ -1,5 +1,5 @@
-// Visibility provider "hard": one texel, one comparison.
-float hardVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
-    ShadowPoint s = shadowPointOf(light, receiver, toLight, 0.0);
-    return s.inFront ? litBy(s, fetchShadowTexel(s, ivec2(floor(s.px)))) : 1.0;
+// Visibility provider "hard": one texel, one comparison, at that texel's centre.
+float hardVisibility(ShadowPoint s) {
+    vec2 texel = clamp(floor(s.px), s.rectMin, s.rectMax - 1.0);
+    return litBy(s, planeDepthAt(s, texel + 0.5), fetchAtlas(s.atlas, s.layer, ivec2(texel)));
 }

@@ -1,13 +1,14 @@
 // Visibility provider "pcf": percentage closer filtering, (2r + 1)^2 bilinear comparisons.
 //
 // Source: Reeves, Salesin, Cook 1987, "Rendering Antialiased Shadows with Depth Maps".
-// Plain way: (2r + 1)^2 hardware comparisons with bilinear filtering, whose weights are a driver's own 8-bit ones.
+// Plain way: (2r + 1)^2 hardware comparisons with bilinear filtering, whose weights are a driver's own 8-bit ones, and
+// which compare one depth with four texels.
 // Here: their sum is a weighted sum over (2r + 2)^2 texels with weight 1 - f at the first row and column, f at the last
-// and 1 between. (r + 1)^2 gathers fetch them, and the weights are exact, so that every pipeline and device agrees.
-float pcfVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
-    ShadowPoint s = shadowPointOf(light, receiver, toLight, float(kPcfRadius));
-    if (!s.inFront) return 1.0;
-    precise vec2 corner = s.px - (0.5 + float(kPcfRadius));
+// and 1 between. (r + 1)^2 gathers fetch them, each is compared with the receiver's plane at its own centre, and the
+// weights are exact, so that every pipeline and device agrees.
+float pcfVisibility(ShadowPoint s) {
+    float border = float(kPcfRadius) + 1.0;
+    precise vec2 corner = clamp(s.px, s.rectMin + border, s.rectMax - border) - (0.5 + float(kPcfRadius));
     precise vec2 first = floor(corner);
     precise vec2 f = corner - first;
     precise float sum = 0.0;
@@ -17,7 +18,8 @@ float pcfVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
         for (uint i = 0u; i <= kPcfRadius; ++i) {
             precise float left = i == 0u ? 1.0 - f.x : 1.0;
             precise float right = i == kPcfRadius ? f.x : 1.0;
-            vec4 lit = litBy(s, gatherShadowTexels(s, ivec2(first) + 2 * ivec2(i, j)));
+            vec2 texel = first + 2.0 * vec2(i, j);
+            vec4 lit = litBy(s, planeDepthsAt(s, texel), gatherShadowTexels(s, texel));
             sum += bottom * (left * lit.x + right * lit.y) + top * (right * lit.z + left * lit.w);
         }
     }

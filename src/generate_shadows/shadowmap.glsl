@@ -1,4 +1,4 @@
-// Standard shadowmaps: which view of a light holds a point, where in its atlas the point lies, and at which depth.
+// Standard shadowmaps: where a receiver lies in a shadow view, how deep, and what is stored there.
 #ifndef GNOMON_GENERATE_SHADOWS_SHADOWMAP_GLSL
 #define GNOMON_GENERATE_SHADOWS_SHADOWMAP_GLSL
 
@@ -9,13 +9,19 @@
 
 // A receiver in a shadow view, biased and ready to be compared.
 struct ShadowPoint {
-    vec2 px;        // in the atlas, texel centres at .5, kept where the whole filter stays inside the rectangle
-    float depth;    // device depth
+    vec2 px;       // in the atlas, texel centres at .5; may lie outside the rectangle
+    vec2 rectMin;  // the rectangle's first pixel
+    vec2 rectMax;  // one past its last
+    float depth;   // device depth at px
+    vec2 slope;    // of the receiver's plane: device depth per texel
+    float linear;  // the receiver's linear depth, without bias, metres
+    vec2 tangent;  // perspective: lateral over linear depth
+    uint view;
     uint atlas;
     float layer;
     vec2 atlasPerTexel;
     bool reversedZ;
-    bool inFront;   // of the light; else nothing can occlude it
+    bool inFront;  // of the light; else nothing can occlude it
 };
 
 // Point lights: the face of the largest component, in the order +X -X +Y -Y +Z -Z.
@@ -26,6 +32,8 @@ uint cubeFace(vec3 fromLight) {
     return fromLight.z >= 0.0 ? 4u : 5u;
 }
 
+bool isOrthographicView(GpuShadowView view) { return (view.flags & kShadowViewOrthographicBit) != 0u; }
+
 vec4 clipFromWorld(GpuShadowView view, vec3 p) {
     precise vec4 clip = view.clipFromWorld[0] * p.x + view.clipFromWorld[1] * p.y + view.clipFromWorld[2] * p.z +
                         view.clipFromWorld[3];
@@ -35,52 +43,69 @@ vec4 clipFromWorld(GpuShadowView view, vec3 p) {
 // Distance along the view axis, metres.
 float linearDepthOf(GpuShadowView view, vec4 clip) {
     precise float linear = clip.w;
-    if ((view.flags & kShadowViewOrthographicBit) != 0u) {
-        linear = (clip.z - view.depthFromLinearA) / view.depthFromLinearB;
-    }
+    if (isOrthographicView(view)) linear = (clip.z - view.depthFromLinearA) / view.depthFromLinearB;
     return linear;
 }
 
-ShadowPoint shadowPointOf(GpuLight light, Receiver receiver, vec3 toLight, float filterRadius) {
-    uint face = lightType(light) == kLightPoint ? cubeFace(receiver.positionWs - light.positionWs) : 0u;
-    GpuShadowView view = shadowViews[light.shadowView + face];
-    bool orthographic = (view.flags & kShadowViewOrthographicBit) != 0u;
+float deviceDepthOf(GpuShadowView view, float linear) {
+    precise float depth = view.depthFromLinearA + (isOrthographicView(view) ? view.depthFromLinearB * linear
+                                                                            : view.depthFromLinearB / max(linear, 1e-4));
+    return depth;
+}
 
-    precise float receiverDepth = linearDepthOf(view, clipFromWorld(view, receiver.positionWs));
-    precise float texelMetres = orthographic ? view.texelMetres : view.texelMetres * receiverDepth;
-    precise vec3 p = receiver.positionWs + normalOffset(view, receiver, toLight, texelMetres, filterRadius);
-    precise vec4 clip = clipFromWorld(view, p);
-    precise float linear = linearDepthOf(view, clip) - linearBias(light, receiver);
-
+ShadowPoint shadowPointIn(uint viewIndex, GpuLight light, Receiver receiver) {
+    GpuShadowView view = shadowViews[viewIndex];
+    bool orthographic = isOrthographicView(view);
+    vec4 clip = clipFromWorld(view, receiver.positionWs);
     ShadowPoint s;
+    s.view = viewIndex;
     s.inFront = clip.w > 0.0;
-    precise float depth = orthographic ? view.depthFromLinearA + view.depthFromLinearB * linear
-                                       : view.depthFromLinearA + view.depthFromLinearB / max(linear, 1e-4);
+    s.linear = linearDepthOf(view, clip);
+    precise vec2 ndc = clip.xy / clip.w;
+    precise vec2 px = ndc * view.pxFromNdcScale + view.pxFromNdcOffset;
+    s.px = px;
+    precise vec2 tangent = orthographic ? vec2(0.0) : ndc * view.pxFromNdcScale / view.pxPerMetre;
+    s.tangent = tangent;
+    s.slope = planeSlope(view, orthographic, receiver.faceNormalWs, ndc, s.linear, tangent);
+    precise float biased = s.linear - linearBias(light, receiver);
+    precise float depth = deviceDepthOf(view, biased);
+    precise float slack = deviceDepthSlack(view, depth, s.slope);
     s.reversedZ = (view.flags & kShadowViewReversedZBit) != 0u;
-    precise float slack = deviceDepthSlack(view, depth);
-    precise float biased = s.reversedZ ? depth + slack : depth - slack;
-    s.depth = biased;
-    precise float inverseW = 1.0 / clip.w;
-    precise vec2 px = clip.xy * inverseW * view.pxFromNdcScale + view.pxFromNdcOffset;
-    float border = filterRadius > 0.0 ? filterRadius + 1.0 : 0.5;
-    s.px = clamp(px, view.rectMinPx + border, view.rectMaxPx - border);
+    precise float compared = s.reversedZ ? depth + slack : depth - slack;
+    s.depth = compared;
+    s.rectMin = view.rectMinPx;
+    s.rectMax = view.rectMaxPx;
     s.atlas = view.atlasAndLayer & 0xFFu;
     s.layer = float(view.atlasAndLayer >> 8u);
-    s.atlasPerTexel = vec2(view.atlasPerTexelX, view.atlasPerTexelY);
+    s.atlasPerTexel = view.atlasPerTexel;
     return s;
 }
 
-// 1 where the receiver is at or before the stored depth.
-float litBy(ShadowPoint s, float stored) {
-    return (s.reversedZ ? stored <= s.depth : stored >= s.depth) ? 1.0 : 0.0;
+// Depth of the receiver's plane at a place in the atlas.
+float planeDepthAt(ShadowPoint s, vec2 px) {
+    precise vec2 away = px - s.px;
+    precise float depth = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
+    return clamp(depth, 0.0, 1.0);
 }
-vec4 litBy(ShadowPoint s, vec4 stored) {
-    return s.reversedZ ? vec4(lessThanEqual(stored, vec4(s.depth))) : vec4(greaterThanEqual(stored, vec4(s.depth)));
+// At the 2x2 texels whose first one is `texel`, in the order of textureGather: (0,1), (1,1), (1,0), (0,0).
+vec4 planeDepthsAt(ShadowPoint s, vec2 texel) {
+    precise vec2 away = texel + 0.5 - s.px;
+    precise float depth = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
+    precise vec4 depths = depth + vec4(s.slope.y, s.slope.x + s.slope.y, s.slope.x, 0.0);
+    return clamp(depths, 0.0, 1.0);
 }
 
-float fetchShadowTexel(ShadowPoint s, ivec2 texel) {
-    ivec3 at = ivec3(texel, int(s.layer));
-    switch (s.atlas) {
+// 1 where the receiver is at or before the stored depth.
+float litBy(ShadowPoint s, float receiverDepth, float stored) {
+    return (s.reversedZ ? stored <= receiverDepth : stored >= receiverDepth) ? 1.0 : 0.0;
+}
+vec4 litBy(ShadowPoint s, vec4 receiverDepths, vec4 stored) {
+    return s.reversedZ ? vec4(lessThanEqual(stored, receiverDepths)) : vec4(greaterThanEqual(stored, receiverDepths));
+}
+
+float fetchAtlas(uint atlas, float layer, ivec2 texel) {
+    ivec3 at = ivec3(texel, int(layer));
+    switch (atlas) {
         case 0u: return texelFetch(shadowAtlas0, at, 0).x;
         case 1u: return texelFetch(shadowAtlas1, at, 0).x;
         case 2u: return texelFetch(shadowAtlas2, at, 0).x;
@@ -88,9 +113,9 @@ float fetchShadowTexel(ShadowPoint s, ivec2 texel) {
     }
 }
 
-// The 2x2 texels whose first one is `texel`, in the order of textureGather: (0,1), (1,1), (1,0), (0,0).
-vec4 gatherShadowTexels(ShadowPoint s, ivec2 texel) {
-    vec3 at = vec3((vec2(texel) + 1.0) * s.atlasPerTexel, s.layer);
+// The 2x2 texels whose first one is `texel`, in the order of textureGather.
+vec4 gatherShadowTexels(ShadowPoint s, vec2 texel) {
+    precise vec3 at = vec3((texel + 1.0) * s.atlasPerTexel, s.layer);
     switch (s.atlas) {
         case 0u: return textureGather(sampler2DArray(shadowAtlas0, shadowSampler), at);
         case 1u: return textureGather(sampler2DArray(shadowAtlas1, shadowSampler), at);

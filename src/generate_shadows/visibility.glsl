@@ -2,7 +2,7 @@
 //
 // Problem: a frame must not depend on which pair got a slot and which is evaluated while lighting.
 // What we do: every evaluation, wherever it happens, returns the value that a slot can hold, and everything before it is
-// precise, so that different pipelines compute the same bits. The 8 bits are perceptual: q = round(255 * sqrt(v)).
+// precise, so that different pipelines compute the same bits. They are perceptual: q = round(255 * sqrt(v)), or 15.
 // A host's own provider: -DGNOMON_HOST_PROVIDER and, on the include path, gnomon_host_provider.glsl, which defines
 //     float hostVisibility(GpuLight light, Receiver receiver, vec3 toLight);   // 0 dark to 1 lit
 #ifndef GNOMON_GENERATE_SHADOWS_VISIBILITY_GLSL
@@ -10,24 +10,64 @@
 
 #include "gpu_interface/numbers.h"
 
-layout(constant_id = 1) const uint kProvider = kProviderPcf;
+layout(constant_id = 1) const uint kProvider = kProviderPcss;
 layout(constant_id = 3) const uint kPcfRadius = 1;
 
-#include "generate_shadows/shadowmap.glsl"
+#include "generate_shadows/cascades.glsl"
 #include "generate_shadows/hard.glsl"
 #include "generate_shadows/pcf.glsl"
+#include "generate_shadows/pcss.glsl"
+#include "shading/stored_visibility.glsl"
 #ifdef GNOMON_HOST_PROVIDER
 #include "gnomon_host_provider.glsl"  // glslc expands no macro here
 #endif
+
+float viewVisibility(uint viewIndex, GpuLight light, Receiver receiver) {
+    ShadowPoint s = shadowPointIn(viewIndex, light, receiver);
+    if (!s.inFront) return 1.0;
+    if (kProvider == kProviderHard) return hardVisibility(s);
+    if (kProvider == kProviderPcf) return pcfVisibility(s);
+    return pcssVisibility(light, s, receiver.pixel);
+}
+
+// What neither cascade of a pair holds is lit.
+float cascadedVisibility(GpuLight light, Receiver receiver) {
+    uint end = light.shadowView + cascadeCount(light);
+    precise float weight = 1.0;
+    precise float visibility = 0.0;
+    uint taken = 0u;
+    for (uint view = light.shadowView; view < end && taken < 2u; ++view) {
+        float border;
+        bool holds = cascadeHolds(view, receiver.positionWs, border);
+        if (!holds && taken == 0u) continue;
+        if (!holds) break;
+        precise float share = taken == 0u ? weight * (1.0 - border) : weight;
+        visibility += share * viewVisibility(view, light, receiver);
+        weight -= share;
+        ++taken;
+        if (border == 0.0) break;
+    }
+    precise float sum = visibility + weight;
+    return sum;
+}
 
 float providerVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
 #ifdef GNOMON_HOST_PROVIDER
     return hostVisibility(light, receiver, toLight);
 #else
-    if (kProvider == kProviderHard) return hardVisibility(light, receiver, toLight);
-    if (kProvider == kProviderPcf) return pcfVisibility(light, receiver, toLight);
-    return 1.0;
+    if (lightType(light) == kLightDirectional) return cascadedVisibility(light, receiver);
+    uint face = lightType(light) == kLightPoint ? cubeFace(receiver.positionWs - light.positionWs) : 0u;
+    return viewVisibility(light.shadowView + face, light, receiver);
 #endif
+}
+
+// How much of the shadow is there: directional lights lose it with the pixel's distance, others with their own.
+float shadowFadeOf(GpuLight light, Receiver receiver) {
+    if (lightType(light) != kLightDirectional) return light.shadowFade;
+    precise vec3 d = receiver.positionWs - frame.eyeWs.xyz;
+    precise float distance = sqrt(dot(d, d));
+    precise float fade = light.positionVs.x * distance + light.positionVs.y;
+    return clamp(fade, 0.0, 1.0);
 }
 
 // Unquantised; for a pixel that the light reaches.
@@ -37,13 +77,14 @@ float evaluateVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
     if (receiver.subsurface || facesLight(receiver.faceNormalWs, toLight)) {
         visibility = providerVisibility(light, receiver, toLight);
     }
-    precise float faded = 1.0 - light.shadowFade * (1.0 - visibility);
+    precise float faded = 1.0 - shadowFadeOf(light, receiver) * (1.0 - visibility);
     return faded;
 }
 
 uint quantiseVisibility(float visibility) {
     precise float root = sqrt(clamp(visibility, 0.0, 1.0));
-    return uint(255.0 * root + 0.5);
+    precise float level = float(kVisibilityLevels) * root + 0.5;
+    return uint(level);
 }
 
 #endif

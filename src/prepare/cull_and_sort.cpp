@@ -22,9 +22,9 @@
 namespace gnomon::prepare {
 namespace {
 
-constexpr double kDirectionalRange = 3.0e38;  // metres; what structs.h states
-constexpr float kLargestCoordinate = 1e9f;    // metres; squares of it are far from a float's end
-constexpr float kLargestConeAngle = 1.55f;    // radians; what scene.h states
+constexpr double kDirectionalRange = 3.0e38;   // metres; what structs.h states
+constexpr float kLargestCoordinate = 1e9f;     // metres; squares of it are far from a float's end
+constexpr float kLargestConeAngle = 1.55f;     // radians; what scene.h states
 constexpr float kLargestAngularRadius = 0.5f;  // radians; what scene.h states
 
 Vec3 toVec3(const float* f) {
@@ -82,8 +82,8 @@ const char* whatIsWrong(const Light& light, std::uint32_t shadowViewCount) {
         if (!local && light.sourceRadius > kLargestAngularRadius) {
             return "its sourceRadius, an angle as it is directional, must be at most 0.5 radians";
         }
-        const std::uint32_t needed = local ? light.type == LightType::Point ? gpu::kPointLightFaces : 1u
-                                           : light.cascadeCount;
+        const std::uint32_t needed =
+            local ? light.type == LightType::Point ? gpu::kPointLightFaces : 1u : light.cascadeCount;
         if (needed > shadowViewCount || light.firstShadowView > shadowViewCount - needed) {
             return "its firstShadowView is out of bounds (a point light needs six views, a spot one, a directional "
                    "light cascadeCount)";

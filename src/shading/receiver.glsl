@@ -10,6 +10,7 @@ struct Receiver {
     vec3 positionWs;
     vec3 faceNormalWs;  // of the side that the camera sees, from the geometry and not from a normal map
     float viewDepth;
+    uvec2 pixel;  // in the active extent
     uint mask;
     bool subsurface;
     bool valid;  // inside the extent and not background
@@ -53,6 +54,7 @@ Receiver receiverAt(uvec2 pixel) {
     r.positionWs = vec3(0.0);
     r.faceNormalWs = vec3(0.0, 0.0, 1.0);
     r.viewDepth = 0.0;
+    r.pixel = pixel;
     r.mask = 0xFFu;
     r.subsurface = false;
     r.valid = all(lessThan(pixel, frame.extent.xy));

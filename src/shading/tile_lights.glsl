@@ -40,11 +40,13 @@ TileLights tileLightsAt(uvec2 pixel) {
 
 uint tileLightEntry(TileLights tile, uint i) { return finalList[tile.first + i]; }
 
-// 8-bit visibility of a pixel in a slot.
+// Stored visibility of a pixel in a slot.
 uint slotVisibility(uint slot, uvec2 pixel) {
     uvec2 local = pixel % kShadowTileSizePx;
     uint lane = mortonLane(local.x, local.y);
-    return visibilityWords[slot * kVisibilitySlotWords + (lane >> 2u)] >> (8u * (lane & 3u)) & 0xFFu;
+    const uint perWord = 32u / kVisibilityBits;
+    uint word = visibilityWords[slot * kVisibilitySlotWords + lane / perWord];
+    return word >> (kVisibilityBits * (lane % perWord)) & kVisibilityLevels;
 }
 
 // 0 dark to 1 lit. An entry that says EVALUATE never occurs in a tile without `evaluate`.

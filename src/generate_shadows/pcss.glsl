@@ -1,0 +1,210 @@
+// Visibility provider "pcss": percentage closer soft shadows, the penumbra of a light with a size.
+//
+// Problem: a shadow is sharp where it touches its blocker and widens with the distance from it.
+// Source: Fernando 2005, "Percentage-Closer Soft Shadows". Its penumbra is (z - zb) / zb times the source's size.
+// Plain way: average the blockers in a region of fixed width, then average comparisons in a region as wide as the
+// penumbra of that average.
+// Here: (1) The disk that the source is, seen from the receiver through the map, is a disk whose radius is linear in the
+// blocker's *device* depth, with and without perspective: one multiplication per stored depth. So (2) each blocker is
+// asked whether it lies in the disk of its own depth, which makes a wide search harmless: what the source cannot see does
+// not count. (3) Search taps crowd toward the middle, where near blockers must be found; filter taps are spread evenly,
+// each a bilinear comparison. (4) A pixel in which no search tap occludes is lit, one in which all do is dark.
+// (5) The pattern is a spiral of golden angles, turned per pixel by a sequence of low discrepancy in whole numbers: every
+// pipeline and device sees the same one. (6) A blocker is nearer to the light than the receiver: a tap's plane depth
+// grows beyond the receiver's by one texel's slope at most, else walls behind the receiver would shadow it.
+// Limits: one depth per texel stands for all blockers behind each other; radii beyond kMaxPcssRadiusPx texels are cut.
+#ifndef GNOMON_GENERATE_SHADOWS_PCSS_GLSL
+#define GNOMON_GENERATE_SHADOWS_PCSS_GLSL
+
+#include "generate_shadows/shadowmap.glsl"
+
+layout(constant_id = 5) const uint kPcssSearchTaps = 16;
+layout(constant_id = 6) const uint kPcssFilterTaps = 24;
+
+// Nearer blockers are searched for as if they were at this share of the receiver's depth.
+const float kNearestBlocker = 0.1;
+const float kGoldenCosine = -0.7373688780783197;
+const float kGoldenSine = 0.6754902942615238;
+
+struct PcssKernel {
+    vec2 first;       // direction of the first tap
+    vec2 pxPerUnit;   // texels per tangent (perspective) or per metre
+    float texel;      // one texel in those units
+    float widest;     // radius of the search, without its margin of a texel
+    float radius0;    // radius of the source's disk at device depth d: radius0 + radius1 * d
+    float radius1;
+    float awayLimit;  // how far a tap's depth may lie behind the receiver's
+    bool cube;        // point light: taps that leave the face look at another
+};
+
+// Turned per pixel: 32 bits are a turn. In whole numbers, since every pipeline must have the same.
+vec2 firstDirection(uvec2 pixel) {
+    uint turn = pixel.x * 3242174889u + pixel.y * 2447445414u + frame.random.y;
+    precise float f = float((turn << 2u) >> 8u) * (1.0 / 16777216.0);
+    precise float t = (2.0 * f - 1.0) * 0.41421356;  // tangent of half an angle within 45 degrees
+    precise float inverse = 1.0 / (1.0 + t * t);
+    precise vec2 d = vec2((1.0 - t * t) * inverse, 2.0 * t * inverse);
+    uint quadrant = turn >> 30u;
+    if ((quadrant & 1u) != 0u) d = vec2(-d.y, d.x);
+    return (quadrant & 2u) != 0u ? -d : d;
+}
+
+vec2 nextDirection(vec2 d) {
+    precise vec2 turned = vec2(kGoldenCosine * d.x - kGoldenSine * d.y, kGoldenSine * d.x + kGoldenCosine * d.y);
+    return turned;
+}
+
+PcssKernel pcssKernelOf(GpuLight light, ShadowPoint s, uvec2 pixel) {
+    GpuShadowView view = shadowViews[s.view];
+    precise float a = view.depthFromLinearA;
+    precise float b = view.depthFromLinearB;
+    precise float r = light.sourceRadius;
+    precise float near = s.reversedZ ? 1.0 : 0.0;
+    PcssKernel k;
+    precise float radius0, radius1, widest;
+    if (isOrthographicView(view)) {
+        radius1 = -r / b;
+        radius0 = r * (s.linear + a / b);
+        widest = max(radius0 + radius1 * near, 0.0);
+    } else {
+        radius1 = r / b;
+        radius0 = -r * (a / b) - r / s.linear;
+        widest = r * (1.0 / kNearestBlocker - 1.0) / s.linear;
+    }
+    precise float texel = 1.0 / max(view.pxPerMetre.x, view.pxPerMetre.y);
+    k.first = firstDirection(pixel);
+    k.pxPerUnit = view.pxPerMetre;
+    k.texel = texel;
+    precise float cut = min(widest, float(kMaxPcssRadiusPx) * texel);
+    k.widest = cut;
+    k.radius0 = radius0;
+    k.radius1 = radius1;
+    precise float limit = abs(s.slope.x) + abs(s.slope.y);
+    k.awayLimit = s.reversedZ ? s.depth - limit : s.depth + limit;
+    k.cube = lightType(light) == kLightPoint;
+    return k;
+}
+
+// Where in the atlas a tap lies. Off the view's axis the disk, which faces the receiver, is stretched outward.
+vec2 tapPosition(ShadowPoint s, PcssKernel k, vec2 direction, float radius) {
+    precise float along = s.tangent.x * direction.x + s.tangent.y * direction.y;
+    precise vec2 stretched = direction + s.tangent * (along / (1.0 + rayLength(s.tangent)));
+    precise vec2 px = s.px + stretched * radius * k.pxPerUnit;
+    return px;
+}
+
+float limitDepth(ShadowPoint s, PcssKernel k, float depth) {
+    return clamp(s.reversedZ ? max(depth, k.awayLimit) : min(depth, k.awayLimit), 0.0, 1.0);
+}
+vec4 limitDepths(ShadowPoint s, PcssKernel k, vec4 depths) {
+    return clamp(s.reversedZ ? max(depths, vec4(k.awayLimit)) : min(depths, vec4(k.awayLimit)), 0.0, 1.0);
+}
+
+bool leavesFace(ShadowPoint s, PcssKernel k, vec2 px) {
+    return k.cube && (any(lessThan(px, s.rectMin + 1.0)) || any(greaterThan(px, s.rectMax - 1.0)));
+}
+
+// A tap beyond the border of a point light's face looks at the face that its direction meets. Returns 1 if lit;
+// `stored` is what is stored there, as a device depth of the receiver's own view.
+float otherFace(GpuLight light, ShadowPoint s, PcssKernel k, vec2 px, out float stored) {
+    GpuShadowView own = shadowViews[s.view];
+    precise vec2 ndc = (px - own.pxFromNdcOffset) / own.pxFromNdcScale;
+    vec3 x = vec3(own.clipFromWorld[0].x, own.clipFromWorld[1].x, own.clipFromWorld[2].x);
+    vec3 y = vec3(own.clipFromWorld[0].y, own.clipFromWorld[1].y, own.clipFromWorld[2].y);
+    vec3 z = vec3(own.clipFromWorld[0].w, own.clipFromWorld[1].w, own.clipFromWorld[2].w);
+    precise vec3 direction = z + x * (ndc.x / dot(x, x)) + y * (ndc.y / dot(y, y));
+    precise vec2 away = px - s.px;
+    precise float planeDepth = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
+    float depth = limitDepth(s, k, planeDepth);
+    precise float linear = own.depthFromLinearB / (depth - own.depthFromLinearA);
+
+    GpuShadowView view = shadowViews[light.shadowView + cubeFace(direction)];
+    precise vec3 clip = view.clipFromWorld[0].xyw * direction.x + view.clipFromWorld[1].xyw * direction.y +
+                        view.clipFromWorld[2].xyw * direction.z;
+    precise vec2 otherPx = clip.xy / clip.z * view.pxFromNdcScale + view.pxFromNdcOffset;
+    ivec2 texel = ivec2(clamp(floor(otherPx), view.rectMinPx, view.rectMaxPx - 1.0));
+    float there = fetchAtlas(view.atlasAndLayer & 0xFFu, float(view.atlasAndLayer >> 8u), texel);
+    bool reversed = (view.flags & kShadowViewReversedZBit) != 0u;
+    // No finite depth: as far as the view sees.
+    bool finite = linear > 0.0 && linear < 1e15;
+    precise float receiver = view.depthFromLinearA + view.depthFromLinearB / (linear * clip.z);
+    if (!finite) receiver = reversed ? 0.0 : 1.0;
+    receiver = clamp(receiver, 0.0, 1.0);
+    precise float inverse = (there - view.depthFromLinearA) / view.depthFromLinearB * clip.z;  // 1 / own linear depth
+    precise float asOwn = own.depthFromLinearA + own.depthFromLinearB * inverse;
+    stored = asOwn;
+    return (reversed ? there <= receiver : there >= receiver) ? 1.0 : 0.0;
+}
+
+// The filter's radius; or below 0 where no filter is needed, and then `visibility` is known.
+float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visibility) {
+    precise float reach = k.widest + k.texel;
+    vec2 direction = k.first;
+    precise float sum = 0.0;
+    uint occluding = 0u;
+    uint blockers = 0u;
+    for (uint i = 0u; i < kPcssSearchTaps; ++i) {
+        precise float radius = (float(i) + 0.5) / float(kPcssSearchTaps) * reach;
+        vec2 px = tapPosition(s, k, direction, radius);
+        direction = nextDirection(direction);
+        float stored;
+        float lit;
+        if (leavesFace(s, k, px)) {
+            lit = otherFace(light, s, k, px, stored);
+        } else {
+            vec2 texel = clamp(floor(px), s.rectMin, s.rectMax - 1.0);
+            stored = fetchAtlas(s.atlas, s.layer, ivec2(texel));
+            precise vec2 away = texel + 0.5 - s.px;
+            precise float plane = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
+            lit = litBy(s, limitDepth(s, k, plane), stored);
+        }
+        if (lit != 0.0) continue;
+        ++occluding;
+        precise float seen = k.radius0 + k.radius1 * stored + 1.5 * k.texel;
+        if (radius > seen) continue;
+        sum += stored;
+        ++blockers;
+    }
+    visibility = occluding == kPcssSearchTaps ? 0.0 : 1.0;
+    if (blockers == 0u || occluding == kPcssSearchTaps) return -1.0;
+    precise float mean = sum / float(blockers);
+    precise float radius = clamp(k.radius0 + k.radius1 * mean, k.texel, max(k.widest, k.texel));
+    return radius;
+}
+
+float filterTap(ShadowPoint s, PcssKernel k, vec2 px) {
+    precise vec2 corner = clamp(px, s.rectMin + 1.0, s.rectMax - 1.0) - 0.5;
+    precise vec2 first = floor(corner);
+    precise vec2 f = corner - first;
+    precise vec2 away = first + 0.5 - s.px;
+    precise float depth = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
+    precise vec4 depths = depth + vec4(s.slope.y, s.slope.x + s.slope.y, s.slope.x, 0.0);
+    vec4 lit = litBy(s, limitDepths(s, k, depths), gatherShadowTexels(s, first));
+    precise float visibility =
+        f.y * ((1.0 - f.x) * lit.x + f.x * lit.y) + (1.0 - f.y) * (f.x * lit.z + (1.0 - f.x) * lit.w);
+    return visibility;
+}
+
+float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius) {
+    vec2 direction = k.first;
+    precise float sum = 0.0;
+    for (uint i = 0u; i < kPcssFilterTaps; ++i) {
+        precise float share = sqrt((float(i) + 0.5) / float(kPcssFilterTaps));
+        vec2 px = tapPosition(s, k, direction, share * radius);
+        direction = nextDirection(direction);
+        float stored;
+        precise float lit = leavesFace(s, k, px) ? otherFace(light, s, k, px, stored) : filterTap(s, k, px);
+        sum += lit;
+    }
+    precise float visibility = sum / float(kPcssFilterTaps);
+    return visibility;
+}
+
+float pcssVisibility(GpuLight light, ShadowPoint s, uvec2 pixel) {
+    PcssKernel k = pcssKernelOf(light, s, pixel);
+    float visibility;
+    float radius = searchBlockers(light, s, k, visibility);
+    return radius < 0.0 ? visibility : filterPenumbra(light, s, k, radius);
+}
+
+#endif

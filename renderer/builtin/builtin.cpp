@@ -27,6 +27,8 @@ constexpr std::array kEntries = {
           [](const BuiltinOptions&) { return makeCloth(); }},
     Entry{"masked", "Panels with alpha-tested holes, a point and a spot behind them.",
           [](const BuiltinOptions&) { return makeMasked(); }},
+    Entry{"sundial", "A dial and obelisks from 4 m to 150 m under the sun, and one lamp: every cascade.",
+          [](const BuiltinOptions&) { return makeSundial(); }},
     Entry{"single-triangle", "One double-sided triangle and one point light.",
           [](const BuiltinOptions&) { return makeSingleTriangle(); }},
     Entry{"lights-only", "Three lights and nothing to shine on.",

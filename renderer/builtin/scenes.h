@@ -13,6 +13,7 @@ Scene makeBoxes();
 Scene makeColumns(const BuiltinOptions& options);
 Scene makeCloth();
 Scene makeMasked();
+Scene makeSundial();
 Scene makeSingleTriangle();
 Scene makeLightsOnly();
 

@@ -177,6 +177,46 @@ Scene makeMasked() {
     return finished(b);
 }
 
+// Obelisks along a line of sight from 3 m to 150 m, and a leaning gnomon on a dial in front: one sun, every cascade.
+Scene makeSundial() {
+    SceneBuilder b("sundial");
+    floorPlane(b, plain(b, "sand", {0.62f, 0.55f, 0.42f}), 200.0f);
+    const std::uint32_t stone = plain(b, "stone", {0.72f, 0.68f, 0.62f});
+    ShapeBuilder dial(stone), obelisk(stone);
+    const glm::vec2 disk[] = {{1.1f, 0.0f}, {1.1f, 0.35f}, {1.0f, 0.40f}, {0.0f, 0.40f}};
+    dial.lathe(disk, 48);
+    const glm::vec3 rod[] = {{0, 0.35f, 0.2f}, {0, 1.15f, -0.75f}};
+    dial.tube(rod, 0.025f, 12);
+    for (int hour = -6; hour <= 6; ++hour) {
+        dial.setTransform(placed({0, 0, 0}, 0.2618f * static_cast<float>(hour)));
+        dial.box({-0.012f, 0.39f, -0.93f}, {0.012f, 0.425f, -0.78f});
+    }
+    b.place("dial", dial);
+    const glm::vec2 shaft[] = {{0.45f, 0.0f}, {0.30f, 4.6f}, {0.0f, 5.2f}};
+    obelisk.lathe(shaft, 4, true);
+    std::vector<Primitive> primitives;
+    primitives.push_back(obelisk.take());
+    const std::uint32_t mesh = b.mesh("obelisk", std::move(primitives));
+    for (int i = 0; i < 14; ++i) {
+        const float away = 4.0f * std::pow(1.32f, static_cast<float>(i)), side = (i & 1) != 0 ? 1.0f : -1.0f;
+        b.place(mesh, placed({side * (1.6f + 0.16f * away), 0, -away}, 0.4f * static_cast<float>(i)));
+    }
+    SceneLight sun;
+    sun.name = "sun";
+    sun.kind = LightKind::Directional;
+    sun.direction = glm::normalize(glm::vec3(-0.62f, -0.55f, -0.35f));
+    sun.colour = {1.0f, 0.93f, 0.82f};
+    sun.intensity = 30.0f;
+    sun.sourceRadius = 0.00465f;
+    b.scene.lights.push_back(sun);
+    addPoint(b, {-1.6f, 0.9f, 0.9f}, {1.0f, 0.55f, 0.25f}, 6.0f, 4.0f);
+    b.camera("default", {1.3f, 2.1f, 2.9f}, {-0.1f, 0.9f, -1.5f}, 0.9f);
+    b.camera("grazing", {0.2f, 0.35f, 6.0f}, {0, 0.9f, -20.0f}, 0.7f);
+    b.scene.skyColour = {1.1f, 1.5f, 2.3f};
+    b.scene.groundColour = {0.7f, 0.6f, 0.5f};
+    return finished(b, 4.0f);
+}
+
 Scene makeSingleTriangle() {
     SceneBuilder b("single-triangle");
     const std::uint32_t material = plain(b, "grey", glm::vec3(0.5f));

@@ -18,7 +18,7 @@ inline constexpr std::uint32_t kCascadeStepPx = 16;
 
 struct CascadeSettings {
     std::uint32_t count = 4;     ///< 1 to 8
-    float evenShare = 0.15f;     ///< of the split distances: 0 logarithmic, 1 even
+    float evenShare = 0.05f;     ///< of the split distances: 0 logarithmic, 1 even
     float nearestMetres = 1.0f;  ///< where the logarithm starts, at most a tenth of the reach
     float reachMetres = 200.0f;  ///< of the last cascade, at most; scenes that end before it need less
 };

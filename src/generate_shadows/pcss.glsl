@@ -7,8 +7,9 @@
 // Here: (1) The disk that the source is, seen from the receiver through the map, is a disk whose radius is linear in the
 // blocker's *device* depth, with and without perspective: one multiplication per stored depth. So (2) each blocker is
 // asked whether it lies in the disk of its own depth, which makes a wide search harmless: what the source cannot see does
-// not count. (3) Search taps crowd toward the middle, where near blockers must be found; filter taps are spread evenly,
-// each a bilinear comparison. (4) A pixel in which no search tap occludes is lit, one in which all do is dark.
+// not count. (3) Search taps, four texels each, crowd toward the middle (radius by the square), where near blockers must
+// be found; filter taps are spread evenly, each a bilinear comparison. (4) A pixel in which no texel of the search is a
+// blocker is lit, one in which all occlude is dark.
 // (5) The pattern is a spiral of golden angles, turned per pixel by a sequence of low discrepancy in whole numbers: every
 // pipeline and device sees the same one. (6) A blocker is nearer to the light than the receiver: a tap's plane depth
 // grows beyond the receiver's by one texel's slope at most, else walls behind the receiver would shadow it.
@@ -136,50 +137,60 @@ float otherFace(GpuLight light, ShadowPoint s, PcssKernel k, vec2 px, out float 
     return (reversed ? there <= receiver : there >= receiver) ? 1.0 : 0.0;
 }
 
+// Four texels around a tap: their depths, and 1 where the receiver is lit by them.
+vec4 tapTexels(ShadowPoint s, PcssKernel k, vec2 px, out vec4 stored, out vec2 f) {
+    precise vec2 corner = clamp(px, s.rectMin + 1.0, s.rectMax - 1.0) - 0.5;
+    precise vec2 first = floor(corner);
+    precise vec2 fraction = corner - first;
+    f = fraction;
+    precise vec2 away = first + 0.5 - s.px;
+    precise float depth = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
+    precise vec4 depths = depth + vec4(s.slope.y, s.slope.x + s.slope.y, s.slope.x, 0.0);
+    stored = gatherShadowTexels(s, first);
+    return litBy(s, limitDepths(s, k, depths), stored);
+}
+
 // The filter's radius; or below 0 where no filter is needed, and then `visibility` is known.
 float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visibility) {
     precise float reach = k.widest + k.texel;
     vec2 direction = k.first;
     precise float sum = 0.0;
-    uint occluding = 0u;
-    uint blockers = 0u;
+    precise float occluding = 0.0;
+    precise float blockers = 0.0;
     for (uint i = 0u; i < kPcssSearchTaps; ++i) {
-        precise float radius = (float(i) + 0.5) / float(kPcssSearchTaps) * reach;
+        precise float share = (float(i) + 0.5) / float(kPcssSearchTaps);
+        precise float radius = share * share * reach;
         vec2 px = tapPosition(s, k, direction, radius);
         direction = nextDirection(direction);
-        float stored;
-        float lit;
+        vec4 stored, lit;
+        vec2 f;
         if (leavesFace(s, k, px)) {
-            lit = otherFace(light, s, k, px, stored);
+            float there;
+            lit = vec4(otherFace(light, s, k, px, there));
+            stored = vec4(there);
         } else {
-            vec2 texel = clamp(floor(px), s.rectMin, s.rectMax - 1.0);
-            stored = fetchAtlas(s.atlas, s.layer, ivec2(texel));
-            precise vec2 away = texel + 0.5 - s.px;
-            precise float plane = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
-            lit = litBy(s, limitDepth(s, k, plane), stored);
+            lit = tapTexels(s, k, px, stored, f);
         }
-        if (lit != 0.0) continue;
-        ++occluding;
-        precise float seen = k.radius0 + k.radius1 * stored + 1.5 * k.texel;
-        if (radius > seen) continue;
-        sum += stored;
-        ++blockers;
+        precise vec4 seen = k.radius0 + k.radius1 * stored + 1.5 * k.texel;
+        precise vec4 occludes = 1.0 - lit;
+        precise vec4 blocks = occludes * vec4(greaterThanEqual(seen, vec4(radius)));
+        precise vec4 depths = blocks * stored;
+        occluding += (occludes.x + occludes.y) + (occludes.z + occludes.w);
+        blockers += (blocks.x + blocks.y) + (blocks.z + blocks.w);
+        sum += (depths.x + depths.y) + (depths.z + depths.w);
     }
-    visibility = occluding == kPcssSearchTaps ? 0.0 : 1.0;
-    if (blockers == 0u || occluding == kPcssSearchTaps) return -1.0;
-    precise float mean = sum / float(blockers);
+    bool dark = occluding == 4.0 * float(kPcssSearchTaps);
+    visibility = dark ? 0.0 : 1.0;
+    if (blockers == 0.0 || dark) return -1.0;
+    precise float mean = sum / blockers;
     precise float radius = clamp(k.radius0 + k.radius1 * mean, k.texel, max(k.widest, k.texel));
     return radius;
 }
 
 float filterTap(ShadowPoint s, PcssKernel k, vec2 px) {
-    precise vec2 corner = clamp(px, s.rectMin + 1.0, s.rectMax - 1.0) - 0.5;
-    precise vec2 first = floor(corner);
-    precise vec2 f = corner - first;
-    precise vec2 away = first + 0.5 - s.px;
-    precise float depth = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
-    precise vec4 depths = depth + vec4(s.slope.y, s.slope.x + s.slope.y, s.slope.x, 0.0);
-    vec4 lit = litBy(s, limitDepths(s, k, depths), gatherShadowTexels(s, first));
+    vec4 stored;
+    vec2 f;
+    vec4 lit = tapTexels(s, k, px, stored, f);
     precise float visibility =
         f.y * ((1.0 - f.x) * lit.x + f.x * lit.y) + (1.0 - f.y) * (f.x * lit.z + (1.0 - f.x) * lit.w);
     return visibility;

@@ -29,4 +29,14 @@ bool cascadeHolds(uint viewIndex, vec3 positionWs, out float border) {
 
 uint cascadeCount(GpuLight light) { return light.typeAndFlags >> kLightCascadesShift & kLightCascadesMask; }
 
+// The first cascade that holds the receiver, or cascadeCount().
+uint cascadeOf(GpuLight light, vec3 positionWs, out float border) {
+    uint count = cascadeCount(light);
+    border = 0.0;
+    for (uint i = 0u; i < count; ++i) {
+        if (cascadeHolds(light.shadowView + i, positionWs, border)) return i;
+    }
+    return count;
+}
+
 #endif

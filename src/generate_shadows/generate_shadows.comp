@@ -13,13 +13,11 @@
 #define GNOMON_LISTS_ACCESS
 #include "vulkan/work_group.glsl"
 #include "generate_shadows/visibility.glsl"
+#include "generate_shadows/batch.glsl"
+#ifndef GNOMON_HOST_PROVIDER
+#include "generate_shadows/soft_batch.glsl"
+#endif
 
-const uint kBits = kVisibilityBits;
-const uint kBatch = 32u / kBits;  // lights, and pixels in a word of a slot
-const uint kLevels = kVisibilityLevels;
-const uint kSlotWords = kVisibilitySlotWords;
-
-shared uint packedVisibility[kWorkGroupSize];
 shared uint subgroupLit[kSubgroupCount];
 shared uint subgroupDark[kSubgroupCount];
 shared uint batchSlot;
@@ -29,27 +27,6 @@ void appendEvaluateTile(uvec2 tile) {
     if (i >= frame.tileCounts.x * frame.tileCounts.y) return;
     evaluateTiles[i] = tile.y << 16u | tile.x;
     atomicMax(evaluateHead.groupCountY, i / kEvaluateRowTiles + 1u);
-}
-
-uint earlyLight(uint slotId, uint entry) {
-    return unpackEarlyIndex(earlyList[earlyWordIndex(slotId, entry)], entry);
-}
-
-// One field per light of the batch. Pixels that the light does not reach do not vote: all ones in `lit`, zeros in `dark`.
-void evaluateBatch(Receiver receiver, uint slotId, uint first, uint count, out uint stored, out uint lit, out uint dark) {
-    stored = 0u;
-    lit = 0xFFFFFFFFu;
-    dark = 0u;
-    for (uint i = 0u; i < count; ++i) {
-        GpuLight light = lights[earlyLight(slotId, first + i)];
-        vec3 toLight;
-        if (receiver.valid && lightReaches(light, receiver.positionWs, receiver.mask, toLight)) {
-            uint q = quantiseVisibility(evaluateVisibility(light, receiver, toLight));
-            stored |= q << (kBits * i);
-            lit &= ~(kLevels << (kBits * i)) | (q << (kBits * i));
-            dark |= q << (kBits * i);
-        }
-    }
 }
 
 void combineVotes(inout uint lit, inout uint dark) {
@@ -100,11 +77,18 @@ void main() {
     uint missing = 0u;
     for (uint first = 0u; first < earlyCount; first += kBatch) {
         uint count = min(kBatch, earlyCount - first);
-        uint stored, lit, dark;
-        evaluateBatch(receiver, slotId, first, count, stored, lit, dark);
-        lit = subgroupAnd(lit);
-        dark = subgroupOr(dark);
-        packedVisibility[lane] = stored;
+        uint stored, voting;
+#ifndef GNOMON_HOST_PROVIDER
+        if (kProvider == kProviderPcss) {
+            evaluateSoftBatch(lane, tile, receiver, slotId, first, count, stored, voting);
+        } else
+#endif
+        {
+            evaluateBatch(receiver, slotId, first, count, stored, voting);
+            packedVisibility[lane] = stored;
+        }
+        uint lit = subgroupAnd(stored | ~voting);
+        uint dark = subgroupOr(stored & voting);
         if (kSubgroupCount > 1u && subgroupElect()) {
             subgroupLit[gl_SubgroupID] = lit;
             subgroupDark[gl_SubgroupID] = dark;

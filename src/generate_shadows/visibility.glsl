@@ -30,25 +30,25 @@ float viewVisibility(uint viewIndex, GpuLight light, Receiver receiver) {
     return pcssVisibility(light, s, receiver.pixel);
 }
 
-// What neither cascade of a pair holds is lit.
+// The first cascade that holds the receiver, blended with the next one; what neither holds is lit.
 float cascadedVisibility(GpuLight light, Receiver receiver) {
-    uint end = light.shadowView + cascadeCount(light);
-    precise float weight = 1.0;
+    uint count = cascadeCount(light);
+    float border;
+    uint cascade = cascadeOf(light, receiver.positionWs, border);
+    if (cascade == count) return 1.0;
+    precise float weight = 1.0 - border;
     precise float visibility = 0.0;
-    uint taken = 0u;
-    for (uint view = light.shadowView; view < end && taken < 2u; ++view) {
-        float border;
-        bool holds = cascadeHolds(view, receiver.positionWs, border);
-        if (!holds && taken == 0u) continue;
-        if (!holds) break;
-        precise float share = taken == 0u ? weight * (1.0 - border) : weight;
-        visibility += share * viewVisibility(view, light, receiver);
-        weight -= share;
-        ++taken;
+    for (uint i = 0u; i < 2u; ++i) {  // a loop, so that the filter's code exists once
+        float ignored;
+        bool holds = i == 0u || (cascade + 1u < count &&
+                                 cascadeHolds(light.shadowView + cascade + 1u, receiver.positionWs, ignored));
+        precise float seen = 1.0;
+        if (holds) seen = viewVisibility(light.shadowView + cascade + i, light, receiver);
+        visibility += weight * seen;
         if (border == 0.0) break;
+        weight = border;
     }
-    precise float sum = visibility + weight;
-    return sum;
+    return visibility;
 }
 
 float providerVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
@@ -70,15 +70,26 @@ float shadowFadeOf(GpuLight light, Receiver receiver) {
     return clamp(fade, 0.0, 1.0);
 }
 
-// Unquantised; for a pixel that the light reaches.
-float evaluateVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
-    if (!lightCasts(light) || kProvider == kProviderOff) return 1.0;
-    precise float visibility = 0.0;
-    if (receiver.subsurface || facesLight(receiver.faceNormalWs, toLight)) {
-        visibility = providerVisibility(light, receiver, toLight);
-    }
+float fadedVisibility(GpuLight light, Receiver receiver, float visibility) {
     precise float faded = 1.0 - shadowFadeOf(light, receiver) * (1.0 - visibility);
     return faded;
+}
+
+// Whether a shadowmap must be asked; else `visibility`, unfaded, is known.
+bool needsShadowmap(GpuLight light, Receiver receiver, vec3 toLight, out float visibility) {
+    visibility = 1.0;
+    if (!lightCasts(light) || kProvider == kProviderOff) return false;
+    visibility = 0.0;
+    return receiver.subsurface || facesLight(receiver.faceNormalWs, toLight);
+}
+
+// Unquantised; for a pixel that the light reaches.
+float evaluateVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
+    float visibility;
+    if (needsShadowmap(light, receiver, toLight, visibility)) {
+        visibility = providerVisibility(light, receiver, toLight);
+    }
+    return lightCasts(light) ? fadedVisibility(light, receiver, visibility) : 1.0;
 }
 
 uint quantiseVisibility(float visibility) {

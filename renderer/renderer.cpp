@@ -42,6 +42,7 @@ std::unique_ptr<Context> makeContext(const Device& device, const RendererDesc& d
     c.pcfRadius = desc.pcfRadius;
     c.pcss = desc.pcss;
     c.visibilityBits = desc.visibilityBits;
+    c.maxShadowAtlases = 1;
     c.listReservation = desc.listReservation;
     c.fixedListEntriesPerTile = desc.fixedListEntriesPerTile;
     std::unique_ptr<Context> context;

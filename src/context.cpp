@@ -53,6 +53,10 @@ Result checkDesc(const ContextDesc& desc) {
         return Result::failure(Status::BadArgument, "ContextDesc::pcss has %u and %u taps; each must be 1 to %u.",
                                desc.pcss.searchTaps, desc.pcss.filterTaps, kMaxPcssTaps);
     }
+    if (desc.maxShadowAtlases < 1 || desc.maxShadowAtlases > kMaxShadowAtlases) {
+        return Result::failure(Status::BadArgument, "ContextDesc::maxShadowAtlases is %u; it must be 1 to %u.",
+                               desc.maxShadowAtlases, kMaxShadowAtlases);
+    }
     if (desc.visibilityBits != kMaxVisibilityBits && desc.visibilityBits != kMinVisibilityBits) {
         return Result::failure(Status::BadArgument, "ContextDesc::visibilityBits is %u; it must be 8 or 4.",
                                desc.visibilityBits);
@@ -248,10 +252,11 @@ Result Context::create(const ContextDesc& desc, std::unique_ptr<Context>& out) n
                                         desc.hostDepthPyramid ? 1u : 0u,
                                         desc.pcss.searchTaps,
                                         desc.pcss.filterTaps,
-                                        desc.visibilityBits};
+                                        desc.visibilityBits,
+                                        desc.maxShadowAtlases};
         static_assert(kSpecSubgroupSize == 0 && kSpecProvider == 1 && kSpecListReservation == 2 &&
                       kSpecPcfRadius == 3 && kSpecHostDepthPyramid == 4 && kSpecPcssSearchTaps == 5 &&
-                      kSpecPcssFilterTaps == 6 && kSpecVisibilityBits == 7);
+                      kSpecPcssFilterTaps == 6 && kSpecVisibilityBits == 7 && kSpecShadowAtlases == 8);
         std::copy(std::begin(values), std::end(values), state->specialization);
         if (Result made = createLayouts(*state); !made) return made;
         for (std::uint32_t id = 0; id < kPassCount; ++id) {

@@ -268,9 +268,10 @@ Result checkFrame(const View::State& state, const FrameDesc& frame) {
         return Result::failure(Status::BadArgument,
                                "ContextDesc::hostDepthPyramid is set, but FrameDesc::depthPyramid is missing.");
     }
-    if (frame.atlases.size() > kMaxShadowAtlases) {
-        return Result::failure(Status::BadArgument, "%u shadow atlases were given; %u are possible.",
-                               static_cast<unsigned>(frame.atlases.size()), kMaxShadowAtlases);
+    if (frame.atlases.size() > state.context->desc.maxShadowAtlases) {
+        return Result::failure(Status::BadArgument,
+                               "%u shadow atlases were given; ContextDesc::maxShadowAtlases is %u.",
+                               static_cast<unsigned>(frame.atlases.size()), state.context->desc.maxShadowAtlases);
     }
     for (const ShadowAtlas& atlas : frame.atlases) {
         if (atlas.view == VK_NULL_HANDLE || atlas.widthPx == 0 || atlas.heightPx == 0) {

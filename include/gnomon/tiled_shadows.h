@@ -69,6 +69,8 @@ struct ContextDesc {
     Filter filter = Filter::Pcss;
     std::uint32_t pcfRadius = 1;  ///< texels, 1 to 3
     PcssTaps pcss = kPcssMedium;
+    /// 1 to 4. With one, shaders need not choose at every tap.
+    std::uint32_t maxShadowAtlases = 4;
     /// Bits of a pixel's visibility in a slot: 8, or 4 for half the memory and an error of up to 0.066.
     std::uint32_t visibilityBits = 8;
     ListReservation listReservation = ListReservation::Accurate;
@@ -93,7 +95,7 @@ public:
     [[nodiscard]] VkDescriptorSetLayout receiversSetLayout() const noexcept;
     [[nodiscard]] VkDescriptorSetLayout shadowmapsSetLayout() const noexcept;
     [[nodiscard]] std::uint32_t subgroupSize() const noexcept;
-    /// For pipelines of the host that include src/shading: the values of specialization constants 0 to 7, in order.
+    /// For pipelines of the host that include src/shading: the values of specialization constants 0 to 8, in order.
     [[nodiscard]] std::span<const std::uint32_t> specializationValues() const noexcept;
 
     struct State;

@@ -14,9 +14,6 @@
 #include "vulkan/work_group.glsl"
 #include "generate_shadows/visibility.glsl"
 #include "generate_shadows/batch.glsl"
-#ifndef GNOMON_HOST_PROVIDER
-#include "generate_shadows/soft_batch.glsl"
-#endif
 
 shared uint subgroupLit[kSubgroupCount];
 shared uint subgroupDark[kSubgroupCount];
@@ -78,15 +75,8 @@ void main() {
     for (uint first = 0u; first < earlyCount; first += kBatch) {
         uint count = min(kBatch, earlyCount - first);
         uint stored, voting;
-#ifndef GNOMON_HOST_PROVIDER
-        if (kProvider == kProviderPcss) {
-            evaluateSoftBatch(lane, tile, receiver, slotId, first, count, stored, voting);
-        } else
-#endif
-        {
-            evaluateBatch(receiver, slotId, first, count, stored, voting);
-            packedVisibility[lane] = stored;
-        }
+        evaluateBatch(receiver, slotId, first, count, stored, voting);
+        packedVisibility[lane] = stored;
         uint lit = subgroupAnd(stored | ~voting);
         uint dark = subgroupOr(stored & voting);
         if (kSubgroupCount > 1u && subgroupElect()) {

@@ -28,14 +28,16 @@ const float kGoldenCosine = -0.7373688780783197;
 const float kGoldenSine = 0.6754902942615238;
 
 struct PcssKernel {
-    vec2 first;       // direction of the first tap
-    vec2 pxPerUnit;   // texels per tangent (perspective) or per metre
-    float texel;      // one texel in those units
-    float widest;     // radius of the search, without its margin of a texel
-    float radius0;    // radius of the source's disk at device depth d: radius0 + radius1 * d
+    vec2 first;     // direction of the first tap
+    vec2 right;     // texels per tangent (perspective) or per metre, right and down in the disk that the receiver sees
+    vec2 down;
+    float texel;    // one texel in those units
+    float widest;   // radius of the search, without its margin of a texel
+    float radius0;  // radius of the source's disk at device depth d: radius0 + radius1 * d
     float radius1;
-    float awayLimit;  // how far a tap's depth may lie behind the receiver's
-    bool cube;        // point light: taps that leave the face look at another
+    float nearest;  // bounds of the depth that a texel is compared with: at most a texel's slope behind the receiver
+    float farthest;
+    bool cube;      // point light: taps that leave the face look at another
 };
 
 // Turned per pixel: 32 bits are a turn. In whole numbers, since every pipeline must have the same.
@@ -51,8 +53,19 @@ vec2 firstDirection(uvec2 pixel) {
 }
 
 vec2 nextDirection(vec2 d) {
-    precise vec2 turned = vec2(kGoldenCosine * d.x - kGoldenSine * d.y, kGoldenSine * d.x + kGoldenCosine * d.y);
+    precise vec2 turned = vec2(fma(kGoldenCosine, d.x, -kGoldenSine * d.y), fma(kGoldenSine, d.x, kGoldenCosine * d.y));
     return turned;
+}
+
+// Off the view's axis the disk, which faces the receiver, is stretched outward.
+void placeDisk(ShadowPoint s, vec2 pxPerUnit, inout PcssKernel k) {
+    precise float stretch = 1.0 / (1.0 + rayLength(s.tangent));
+    precise vec2 right = vec2(1.0 + s.tangent.x * s.tangent.x * stretch, s.tangent.x * s.tangent.y * stretch);
+    precise vec2 down = vec2(s.tangent.x * s.tangent.y * stretch, 1.0 + s.tangent.y * s.tangent.y * stretch);
+    precise vec2 rightPx = right * pxPerUnit;
+    precise vec2 downPx = down * pxPerUnit;
+    k.right = rightPx;
+    k.down = downPx;
 }
 
 PcssKernel pcssKernelOf(GpuLight light, ShadowPoint s, uvec2 pixel) {
@@ -73,32 +86,33 @@ PcssKernel pcssKernelOf(GpuLight light, ShadowPoint s, uvec2 pixel) {
         widest = r * (1.0 / kNearestBlocker - 1.0) / s.linear;
     }
     precise float texel = 1.0 / max(view.pxPerMetre.x, view.pxPerMetre.y);
-    k.first = firstDirection(pixel);
-    k.pxPerUnit = view.pxPerMetre;
-    k.texel = texel;
     precise float cut = min(widest, float(kMaxPcssRadiusPx) * texel);
+    precise float limit = abs(s.slope.x) + abs(s.slope.y);
+    precise float behind = s.reversedZ ? s.depth - limit : s.depth + limit;
+    k.first = firstDirection(pixel);
+    placeDisk(s, view.pxPerMetre, k);
+    k.texel = texel;
     k.widest = cut;
     k.radius0 = radius0;
     k.radius1 = radius1;
-    precise float limit = abs(s.slope.x) + abs(s.slope.y);
-    k.awayLimit = s.reversedZ ? s.depth - limit : s.depth + limit;
+    k.nearest = s.reversedZ ? clamp(behind, 0.0, 1.0) : 0.0;
+    k.farthest = s.reversedZ ? 1.0 : clamp(behind, 0.0, 1.0);
     k.cube = lightType(light) == kLightPoint;
     return k;
 }
 
-// Where in the atlas a tap lies. Off the view's axis the disk, which faces the receiver, is stretched outward.
-vec2 tapPosition(ShadowPoint s, PcssKernel k, vec2 direction, float radius) {
-    precise float along = s.tangent.x * direction.x + s.tangent.y * direction.y;
-    precise vec2 stretched = direction + s.tangent * (along / (1.0 + rayLength(s.tangent)));
-    precise vec2 px = s.px + stretched * radius * k.pxPerUnit;
-    return px;
+// Where in the atlas a tap lies, from the receiver.
+vec2 tapOffset(PcssKernel k, vec2 direction, float radius) {
+    precise vec2 unit = vec2(fma(k.right.x, direction.x, k.down.x * direction.y),
+                             fma(k.right.y, direction.x, k.down.y * direction.y));
+    precise vec2 offset = unit * radius;
+    return offset;
 }
 
-float limitDepth(ShadowPoint s, PcssKernel k, float depth) {
-    return clamp(s.reversedZ ? max(depth, k.awayLimit) : min(depth, k.awayLimit), 0.0, 1.0);
-}
-vec4 limitDepths(ShadowPoint s, PcssKernel k, vec4 depths) {
-    return clamp(s.reversedZ ? max(depths, vec4(k.awayLimit)) : min(depths, vec4(k.awayLimit)), 0.0, 1.0);
+// Whether a tap within this radius may need more than its four texels of the rectangle.
+bool mayLeave(ShadowPoint s, PcssKernel k, float radius) {
+    precise vec2 extent = radius * (abs(k.right) + abs(k.down)) + 1.5;
+    return any(lessThan(s.px - extent, s.rectMin)) || any(greaterThan(s.px + extent, s.rectMax));
 }
 
 bool leavesFace(ShadowPoint s, PcssKernel k, vec2 px) {
@@ -116,7 +130,7 @@ float otherFace(GpuLight light, ShadowPoint s, PcssKernel k, vec2 px, out float 
     precise vec3 direction = z + x * (ndc.x / dot(x, x)) + y * (ndc.y / dot(y, y));
     precise vec2 away = px - s.px;
     precise float planeDepth = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
-    float depth = limitDepth(s, k, planeDepth);
+    float depth = clamp(planeDepth, k.nearest, k.farthest);
     precise float linear = own.depthFromLinearB / (depth - own.depthFromLinearA);
 
     GpuShadowView view = shadowViews[light.shadowView + cubeFace(direction)];
@@ -137,77 +151,110 @@ float otherFace(GpuLight light, ShadowPoint s, PcssKernel k, vec2 px, out float 
     return (reversed ? there <= receiver : there >= receiver) ? 1.0 : 0.0;
 }
 
-// Four texels around a tap: their depths, and 1 where the receiver is lit by them.
+// Four texels around a tap at `px`: their depths, and 1 where the receiver is lit by them. The plane's depth is affine,
+// so it is advanced by the texels' distance from the receiver.
 vec4 tapTexels(ShadowPoint s, PcssKernel k, vec2 px, out vec4 stored, out vec2 f) {
-    precise vec2 corner = clamp(px, s.rectMin + 1.0, s.rectMax - 1.0) - 0.5;
+    precise vec2 corner = px - 0.5;
     precise vec2 first = floor(corner);
     precise vec2 fraction = corner - first;
     f = fraction;
     precise vec2 away = first + 0.5 - s.px;
-    precise float depth = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
+    precise float depth = fma(s.slope.x, away.x, fma(s.slope.y, away.y, s.depth));
     precise vec4 depths = depth + vec4(s.slope.y, s.slope.x + s.slope.y, s.slope.x, 0.0);
     stored = gatherShadowTexels(s, first);
-    return litBy(s, limitDepths(s, k, depths), stored);
+    return litBy(s, clamp(depths, k.nearest, k.farthest), stored);
 }
 
-// The filter's radius; or below 0 where no filter is needed, and then `visibility` is known.
-float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visibility) {
-    precise float reach = k.widest + k.texel;
-    vec2 direction = k.first;
-    precise float sum = 0.0;
-    precise float occluding = 0.0;
-    precise float blockers = 0.0;
-    for (uint i = 0u; i < kPcssSearchTaps; ++i) {
-        precise float share = (float(i) + 0.5) / float(kPcssSearchTaps);
-        precise float radius = share * share * reach;
-        vec2 px = tapPosition(s, k, direction, radius);
-        direction = nextDirection(direction);
-        vec4 stored, lit;
-        vec2 f;
-        if (leavesFace(s, k, px)) {
-            float there;
-            lit = vec4(otherFace(light, s, k, px, there));
-            stored = vec4(there);
-        } else {
-            lit = tapTexels(s, k, px, stored, f);
-        }
-        precise vec4 seen = k.radius0 + k.radius1 * stored + 1.5 * k.texel;
-        precise vec4 occludes = 1.0 - lit;
-        precise vec4 blocks = occludes * vec4(greaterThanEqual(seen, vec4(radius)));
-        precise vec4 depths = blocks * stored;
-        occluding += (occludes.x + occludes.y) + (occludes.z + occludes.w);
-        blockers += (blocks.x + blocks.y) + (blocks.z + blocks.w);
-        sum += (depths.x + depths.y) + (depths.z + depths.w);
-    }
-    bool dark = occluding == 4.0 * float(kPcssSearchTaps);
-    visibility = dark ? 0.0 : 1.0;
-    if (blockers == 0.0 || dark) return -1.0;
-    precise float mean = sum / blockers;
-    precise float radius = clamp(k.radius0 + k.radius1 * mean, k.texel, max(k.widest, k.texel));
+// What a search has found: counts of texels, and the sum of the blockers' depths.
+struct Blockers {
+    float occluding;
+    float blocking;
+    float depths;
+};
+
+void countBlockers(PcssKernel k, float radius, vec4 lit, vec4 stored, inout Blockers found) {
+    precise vec4 seen = fma(vec4(k.radius1), stored, vec4(fma(1.5, k.texel, k.radius0)));
+    precise vec4 blocks = mix(1.0 - lit, vec4(0.0), lessThan(seen, vec4(radius)));
+    precise float occluding = found.occluding + (4.0 - ((lit.x + lit.y) + (lit.z + lit.w)));
+    precise float blocking = found.blocking + ((blocks.x + blocks.y) + (blocks.z + blocks.w));
+    precise float depths = fma(blocks.x, stored.x, found.depths);
+    depths = fma(blocks.y, stored.y, depths);
+    depths = fma(blocks.z, stored.z, depths);
+    depths = fma(blocks.w, stored.w, depths);
+    found = Blockers(occluding, blocking, depths);
+}
+
+float searchRadius(uint tap, float reach) {
+    precise float share = (float(tap) + 0.5) * (1.0 / float(kPcssSearchTaps));
+    precise float radius = share * share * reach;
     return radius;
 }
 
-float filterTap(ShadowPoint s, PcssKernel k, vec2 px) {
+// The filter's radius; or below 0 where no filter is needed, and then `visibility` is known. Two loops: where all taps
+// stay inside the rectangle, nothing stands between the texture reads.
+float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visibility) {
+    precise float reach = k.widest + k.texel;
+    vec2 direction = k.first;
+    Blockers found = Blockers(0.0, 0.0, 0.0);
     vec4 stored;
     vec2 f;
-    vec4 lit = tapTexels(s, k, px, stored, f);
-    precise float visibility =
-        f.y * ((1.0 - f.x) * lit.x + f.x * lit.y) + (1.0 - f.y) * (f.x * lit.z + (1.0 - f.x) * lit.w);
-    return visibility;
+    if (!mayLeave(s, k, reach)) {
+        for (uint i = 0u; i < kPcssSearchTaps; ++i) {
+            float radius = searchRadius(i, reach);
+            precise vec2 px = s.px + tapOffset(k, direction, radius);
+            vec4 lit = tapTexels(s, k, px, stored, f);
+            countBlockers(k, radius, lit, stored, found);
+            direction = nextDirection(direction);
+        }
+    } else {
+        for (uint i = 0u; i < kPcssSearchTaps; ++i) {
+            float radius = searchRadius(i, reach);
+            precise vec2 px = s.px + tapOffset(k, direction, radius);
+            vec4 lit;
+            if (leavesFace(s, k, px)) {
+                float there;
+                lit = vec4(otherFace(light, s, k, px, there));
+                stored = vec4(there);
+            } else {
+                lit = tapTexels(s, k, clamp(px, s.rectMin + 1.0, s.rectMax - 1.0), stored, f);
+            }
+            countBlockers(k, radius, lit, stored, found);
+            direction = nextDirection(direction);
+        }
+    }
+    bool dark = found.occluding == 4.0 * float(kPcssSearchTaps);
+    visibility = dark ? 0.0 : 1.0;
+    if (found.blocking == 0.0 || dark) return -1.0;
+    precise float mean = found.depths / found.blocking;
+    precise float radius = clamp(fma(k.radius1, mean, k.radius0), k.texel, max(k.widest, k.texel));
+    return radius;
+}
+
+float bilinear(vec4 lit, vec2 f) {
+    precise float top = fma(f.x, lit.z - lit.w, lit.w);
+    precise float bottom = fma(f.x, lit.y - lit.x, lit.x);
+    precise float value = fma(f.y, bottom - top, top);
+    return value;
 }
 
 float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius) {
     vec2 direction = k.first;
     precise float sum = 0.0;
+    vec4 stored;
+    vec2 f;
+    bool inside = !mayLeave(s, k, radius);
     for (uint i = 0u; i < kPcssFilterTaps; ++i) {
-        precise float share = sqrt((float(i) + 0.5) / float(kPcssFilterTaps));
-        vec2 px = tapPosition(s, k, direction, share * radius);
+        precise float share = sqrt((float(i) + 0.5) * (1.0 / float(kPcssFilterTaps)));
+        precise vec2 px = s.px + tapOffset(k, direction, share * radius);
         direction = nextDirection(direction);
-        float stored;
-        precise float lit = leavesFace(s, k, px) ? otherFace(light, s, k, px, stored) : filterTap(s, k, px);
-        sum += lit;
+        if (!inside && leavesFace(s, k, px)) {
+            sum += otherFace(light, s, k, px, stored.x);
+        } else {
+            vec4 lit = tapTexels(s, k, clamp(px, s.rectMin + 1.0, s.rectMax - 1.0), stored, f);
+            sum += bilinear(lit, f);
+        }
     }
-    precise float visibility = sum / float(kPcssFilterTaps);
+    precise float visibility = sum * (1.0 / float(kPcssFilterTaps));
     return visibility;
 }
 

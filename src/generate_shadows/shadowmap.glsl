@@ -105,6 +105,7 @@ vec4 litBy(ShadowPoint s, vec4 receiverDepths, vec4 stored) {
 
 float fetchAtlas(uint atlas, float layer, ivec2 texel) {
     ivec3 at = ivec3(texel, int(layer));
+    if (kShadowAtlases == 1u) return texelFetch(shadowAtlas0, at, 0).x;
     switch (atlas) {
         case 0u: return texelFetch(shadowAtlas0, at, 0).x;
         case 1u: return texelFetch(shadowAtlas1, at, 0).x;
@@ -116,6 +117,7 @@ float fetchAtlas(uint atlas, float layer, ivec2 texel) {
 // The 2x2 texels whose first one is `texel`, in the order of textureGather.
 vec4 gatherShadowTexels(ShadowPoint s, vec2 texel) {
     precise vec3 at = vec3((texel + 1.0) * s.atlasPerTexel, s.layer);
+    if (kShadowAtlases == 1u) return textureGather(sampler2DArray(shadowAtlas0, shadowSampler), at);
     switch (s.atlas) {
         case 0u: return textureGather(sampler2DArray(shadowAtlas0, shadowSampler), at);
         case 1u: return textureGather(sampler2DArray(shadowAtlas1, shadowSampler), at);

@@ -125,6 +125,7 @@ GNOMON_CONSTANT GNOMON_UINT kSpecHostDepthPyramid = 4u;  // 1: tile depth ranges
 GNOMON_CONSTANT GNOMON_UINT kSpecPcssSearchTaps = 5u;    // 1 to kMaxPcssTaps
 GNOMON_CONSTANT GNOMON_UINT kSpecPcssFilterTaps = 6u;    // 1 to kMaxPcssTaps
 GNOMON_CONSTANT GNOMON_UINT kSpecVisibilityBits = 7u;    // 8 or 4
+GNOMON_CONSTANT GNOMON_UINT kSpecShadowAtlases = 8u;     // 1 to kMaxShadowAtlases: how many a frame may have
 GNOMON_CONSTANT GNOMON_UINT kSpecFirstFree = 16u;        // a host's own constants start here
 
 // --- Descriptor bindings ---------------------------------------------------------------------------------------------

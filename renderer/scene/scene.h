@@ -143,7 +143,7 @@ struct Scene {
     std::vector<std::string> notes;               // what a loader left out or repaired, one sentence each
 };
 
-/// World bounds of everything that is drawn; empty for a scene without geometry.
+/// World bounds of everything that is drawn, at rest; empty for a scene without geometry.
 Bounds worldBounds(const Scene& scene);
 
 /// Triangles drawn, every instance counted.

@@ -115,7 +115,7 @@ ShadowPlanSettings planSettingsOf(const Device& device, const Scene& scene, cons
     const std::uint32_t wanted =
         desc.atlasSizePx != 0 ? desc.atlasSizePx : ShadowAtlasImage::defaultSizePx(device, desc.heightPx);
     settings.atlasSizePx = std::min(std::bit_floor(wanted), largest);
-    const Bounds bounds = worldBounds(scene);
+    const Bounds bounds = animatedBounds(scene, 16);
     if (!bounds.empty()) {
         // Room for what moves, and no box of zero depth.
         const double radius = bounds.radius();
@@ -174,12 +174,13 @@ struct Renderer::State {
           timer(d, kFramesInFlight),
           commands{Commands(d), Commands(d)} {
         std::ranges::transform(sceneLights, std::back_inserter(shadowLights), shadowLightOf);
-        scene.setPose(pose);
+        takePose();
     }
     State(const State&) = delete;
     State& operator=(const State&) = delete;
 
     void setTime(double seconds);
+    void takePose();
 
     std::vector<Light> lightsOf(const glm::dvec3& origin, const ShadowPlan& plan) const;
     void selectCasters(const Camera& camera, const glm::dvec3& origin);
@@ -198,7 +199,15 @@ Renderer::~Renderer() {
 void Renderer::State::setTime(double seconds) {
     if (seconds == pose.timeSeconds || !isAnimated(posable)) return;
     poseAt(posable, seconds, pose);
+    takePose();
+}
+
+void Renderer::State::takePose() {
     scene.setPose(pose);
+    // What leaves the bounds must still cast; with room to spare, so that the cascades rarely change.
+    const CasterBounds casters = planner.settings().casters;
+    const double reach = scene.reachOfMoved(casters.centre);
+    if (reach > casters.radius) planner.setCasters({casters.centre, 1.25 * reach});
     for (std::size_t i = 0; i < sceneLights.size(); ++i) {
         if (sceneLights[i].node == kNone) continue;
         requireReachable(sceneLights[i].position, "light", sceneLights[i].name);

@@ -62,11 +62,19 @@ void GpuScene::setPose(const Pose& pose) {
         any = true;
         noteChange(item);
         item.worldFromObject = worldFromObject;
+        item.moved = true;
         placeItem(item);
         noteChange(item);
         transformsDirty_ = transformsDirty_ || moves;
     }
     if (!any) --castersRevision_;
+}
+
+double GpuScene::reachOfMoved(const glm::dvec3& from) const {
+    double reach = 0.0;
+    for (const DrawItem& item : items_)
+        if (item.moved && !item.hidden) reach = std::max(reach, glm::length(item.centre - from) + item.radius);
+    return reach;
 }
 
 void GpuScene::recordVertices(VkCommandBuffer commands) {

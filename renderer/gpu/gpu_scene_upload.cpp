@@ -153,7 +153,9 @@ GpuScene::GpuScene(const Device& device, const Scene& scene) : device_(device) {
     createMaterials(scene, uploader);
     uploader.finish();
     if (!deformed_.empty()) setPose(restPose(scene));
-    changes_.clear();  // nobody has looked yet
+    // Nobody has looked yet.
+    for (DrawItem& item : items_) item.moved = false;
+    changes_.clear();
     castersRevision_ = 1;
 }
 

@@ -53,6 +53,9 @@ void poseAt(const Scene& scene, double timeSeconds, Pose& pose);
 /// Without any animation.
 [[nodiscard]] Pose restPose(const Scene& scene);
 
+/// World bounds of everything drawn, at rest and at `samples` times over the longest animation that plays.
+[[nodiscard]] Bounds animatedBounds(const Scene& scene, std::uint32_t samples);
+
 /// A camera of the scene, moved by its node.
 [[nodiscard]] SceneCamera posedCamera(const Scene& scene, const Pose& pose, const SceneCamera& camera);
 /// A still scene that shows the pose: same instances, primitives and triangles.

@@ -1,5 +1,7 @@
 #include "renderer/scene/scene.h"
 
+#include <algorithm>
+
 #include "renderer/scene/pose.h"
 
 namespace gnomon::renderer {
@@ -13,22 +15,36 @@ void addBox(const Bounds& box, const glm::mat4& worldFromObject, Bounds& world) 
         world.add(glm::vec3(worldFromObject * glm::vec4(p, 1.0f)));
     }
 }
+
+Bounds posedBounds(const Scene& scene, const Pose& pose) {
+    Bounds world;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i)
+        for (const Primitive& primitive : scene.meshes[scene.instances[i].mesh].primitives)
+            if (!deforms(scene.instances[i], primitive))
+                addBox(primitive.bounds, glm::mat4(pose.worldFromObject[i]), world);
+    for (const PosedPrimitive& posed : pose.deformed)
+        addBox(posed.bounds, glm::mat4(pose.worldFromObject[posed.instance]), world);
+    return world;
+}
 }  // namespace
 
 Bounds worldBounds(const Scene& scene) {
-    Bounds world;
-    bool anyDeforms = false;
-    for (const Instance& instance : scene.instances)
-        for (const Primitive& primitive : scene.meshes[instance.mesh].primitives) {
-            if (deforms(instance, primitive))
-                anyDeforms = true;
-            else
-                addBox(primitive.bounds, instance.worldFromObject, world);
-        }
-    if (!anyDeforms) return world;
-    const Pose rest = restPose(scene);
-    for (const PosedPrimitive& posed : rest.deformed)
-        addBox(posed.bounds, glm::mat4(rest.worldFromObject[posed.instance]), world);
+    return posedBounds(scene, restPose(scene));
+}
+
+Bounds animatedBounds(const Scene& scene, std::uint32_t samples) {
+    Bounds world = worldBounds(scene);
+    if (!isAnimated(scene)) return world;
+    float duration = 0.0f;
+    for (const Animation& animation : scene.animations)
+        if (animation.playing) duration = std::max(duration, animation.durationSeconds);
+    Pose pose;
+    for (std::uint32_t s = 0; s < samples; ++s) {
+        poseAt(scene, static_cast<double>(duration) * s / samples, pose);
+        const Bounds posed = posedBounds(scene, pose);
+        world.add(posed.min);
+        world.add(posed.max);
+    }
     return world;
 }
 

@@ -115,6 +115,7 @@ void ShadowAtlasImage::findTasks(const GpuScene& scene, std::span<const ShadowLi
         scene.cull(volume(), candidates_, visible);
         ranges_.insert(ranges_.end(), visible.begin(), visible.end());
         tasks_.push_back({&view, first, static_cast<std::uint32_t>(ranges_.size()) - first});
+        statistics.drawnViews.push_back(static_cast<std::uint32_t>(&view - plan.views.data()));
         ++statistics.viewsDrawn;
     }
     drawn_ = std::move(now);

@@ -16,6 +16,7 @@ namespace gnomon::renderer {
 
 struct ShadowAtlasStatistics {
     std::uint32_t viewsDrawn = 0, viewsCached = 0;
+    std::vector<std::uint32_t> drawnViews;  ///< indices into ShadowPlan::views
     std::uint32_t draws = 0;
     std::uint64_t triangles = 0;
 };

@@ -20,6 +20,7 @@ namespace {
 struct BenchOptions {
     Settings settings;
     std::uint32_t warmUp = 20, frames = 200;
+    double framesPerSecond = 0.0;
     std::vector<std::string> variants = {"deferred", "inline"};
     std::string json;
 };
@@ -29,8 +30,8 @@ class PairedFrames {
 public:
     explicit PairedFrames(renderer::Renderer& renderer) : renderer_(renderer) {}
 
-    void submit(const renderer::SceneCamera& camera, Variant& variant, bool counts) {
-        const std::uint64_t number = renderer_.renderFrame(camera, shadowModeOf(variant.name()));
+    void submit(const renderer::SceneCamera& camera, double timeSeconds, Variant& variant, bool counts) {
+        const std::uint64_t number = renderer_.renderFrame(camera, shadowModeOf(variant.name()), timeSeconds);
         pending_.push_back({number, counts ? &variant : nullptr});
         if (pending_.size() == 2) finish();
     }
@@ -56,9 +57,12 @@ std::vector<Variant> measure(renderer::Renderer& renderer, const Session& sessio
     const std::uint32_t rounds = options.warmUp + options.frames;
     FrameProgress progress(std::uint64_t{rounds} * variants.size());
     PairedFrames frames(renderer);
+    std::uint64_t frame = 0;
     for (std::uint32_t round = 0; round < rounds; ++round)
         for (Variant& variant : variants) {
-            frames.submit(session.camera(), variant, round >= options.warmUp);
+            // Time goes on from frame to frame, so that shadowmaps age alike for all variants.
+            const double time = frameTime(options.settings.time, frame++, options.framesPerSecond);
+            frames.submit(session.camera(), time, variant, round >= options.warmUp);
             progress.step();
         }
     frames.finish();
@@ -99,6 +103,9 @@ void addBenchCommand(CLI::App& app, Work& chosen) {
         ->capture_default_str();
     command->add_option("--frames", options->frames, "Rounds that count")
         ->check(CLI::Range(1, 100'000))
+        ->capture_default_str();
+    command->add_option("--fps", options->framesPerSecond, "Frames per second of the animations' time; 0: they stand")
+        ->check(CLI::Range(0.0, 1e6))
         ->capture_default_str();
     command->add_option("--variants", options->variants, "Some of deferred,inline,off")
         ->delimiter(',')

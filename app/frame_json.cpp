@@ -10,6 +10,8 @@ namespace {
 
 Json settingsOf(const Settings& s) {
     return {{"camera", s.camera},
+            {"time", s.time},
+            {"animation", s.animation},
             {"lights", s.lights},
             {"seed", s.seed},
             {"filter", s.filter},

@@ -21,19 +21,41 @@ struct RenderOptions {
     std::string png, exr, statistics;
     std::string shadows = "deferred";
     std::uint32_t frames = 1;
+    double framesPerSecond = 30.0;
+    bool sequence = false;
     std::optional<float> exposure;
 };
+
+// name_0000.png
+std::string sequenceFile(const std::string& png, std::uint32_t frame) {
+    const std::filesystem::path path(png);
+    return (path.parent_path() / fmt::format("{}_{:04}{}", path.stem().string(), frame, path.extension().string()))
+        .string();
+}
+
+// The first frame's exposure holds for all: a sequence must not flicker.
+float exposureOf(const renderer::HdrPicture& linear, const Session& session, const RenderOptions& options) {
+    return options.exposure                ? *options.exposure
+           : session.scene().exposureEv100 ? *session.scene().exposureEv100
+                                           : renderer::automaticExposure(linear);
+}
 
 FrameResult renderFrames(renderer::Renderer& renderer, const Session& session, const RenderOptions& options) {
     const renderer::ShadowMode mode = shadowModeOf(options.shadows);
     FrameProgress progress(options.frames);
     std::uint64_t last = 0;
+    FrameResult result;
     for (std::uint32_t i = 0; i < options.frames; ++i) {
-        last = renderer.renderFrame(session.camera(), mode);
+        last =
+            renderer.renderFrame(session.camera(), mode, frameTime(options.settings.time, i, options.framesPerSecond));
         if (i + 1 == options.frames) renderer.wait();
+        if (options.sequence) {
+            const renderer::HdrPicture linear = renderer.readPicture();
+            if (i == 0) result.exposureEv100 = exposureOf(linear, session, options);
+            renderer::writePng(renderer::toneMap(linear, result.exposureEv100), sequenceFile(options.png, i));
+        }
         progress.step();
     }
-    FrameResult result;
     result.shadows = options.shadows;
     result.frames = options.frames;
     result.report = renderer.report(last);
@@ -45,12 +67,10 @@ FrameResult renderFrames(renderer::Renderer& renderer, const Session& session, c
 void writePictures(renderer::Renderer& renderer, const Session& session, const RenderOptions& options,
                    FrameResult& result) {
     const renderer::HdrPicture linear = renderer.readPicture();
-    result.exposureEv100 = options.exposure                ? *options.exposure
-                           : session.scene().exposureEv100 ? *session.scene().exposureEv100
-                                                           : renderer::automaticExposure(linear);
+    if (!options.sequence) result.exposureEv100 = exposureOf(linear, session, options);
     const renderer::Picture picture = renderer::toneMap(linear, result.exposureEv100);
     result.hash = renderer::hashOf(picture);
-    if (!options.png.empty()) renderer::writePng(picture, options.png);
+    if (!options.png.empty() && !options.sequence) renderer::writePng(picture, options.png);
     if (!options.exr.empty()) renderer::writeExr(linear, options.exr);
 }
 
@@ -63,7 +83,10 @@ void renderWithin(const renderer::VulkanInstance& instance, const RenderOptions&
     writePictures(renderer, session, options, result);
     if (!options.statistics.empty()) writeJson(describe(session, result), options.statistics);
     printFrame(session, result);
-    if (!options.png.empty()) fmt::print("Written: {}\n", options.png);
+    if (options.sequence)
+        fmt::print("Written: {} to {}\n", sequenceFile(options.png, 0), sequenceFile(options.png, options.frames - 1));
+    else if (!options.png.empty())
+        fmt::print("Written: {}\n", options.png);
 }
 
 int render(const RenderOptions& options) {
@@ -75,7 +98,9 @@ int render(const RenderOptions& options) {
     const std::string extension = std::filesystem::path(options.png).extension().string();
     if (!extension.empty() && extension != ".png" && extension != ".PNG")
         throw UsageError(fmt::format("'{}' is no name for a PNG file: it must end in .png.", options.png));
-    const std::string outputs[] = {options.png, options.exr, options.statistics};
+    if (options.sequence && options.png.empty()) throw UsageError("--sequence needs -o NAME.png to name its files by.");
+    const std::string png = options.sequence ? sequenceFile(options.png, 0) : options.png;
+    const std::string outputs[] = {png, options.exr, options.statistics};
     checkOutputs(outputs, {&options.settings.scene, 1});
     const renderer::VulkanInstance instance(instanceDescOf(options.settings));
     renderWithin(instance, options);
@@ -94,9 +119,13 @@ void addRenderCommand(CLI::App& app, Work& chosen) {
     command->add_option("--shadows", options->shadows, "How lights are shadowed")
         ->check(CLI::IsMember({"deferred", "inline", "off"}))
         ->capture_default_str();
-    command->add_option("--frames", options->frames, "Frames to render; the last is kept")
+    command->add_option("--frames", options->frames, "Frames to render; the last is kept, see --sequence")
         ->check(CLI::Range(1, 100'000))
         ->capture_default_str();
+    command->add_option("--fps", options->framesPerSecond, "Frames per second of the animations' time")
+        ->check(CLI::Range(1e-3, 1e6))
+        ->capture_default_str();
+    command->add_flag("--sequence", options->sequence, "Write every frame, as NAME_0000.png and so on");
     command->add_option("--exposure", options->exposure, "EV100; without it the scene's own, or from the picture");
     command->callback([&chosen, options] { chosen = [options] { return render(*options); }; });
 }

@@ -10,6 +10,7 @@
 #include "app/progress.h"
 #include "renderer/builtin/builtin.h"
 #include "renderer/scene/load_gltf.h"
+#include "renderer/scene/play_animation.h"
 
 namespace gnomon::app {
 namespace {
@@ -67,6 +68,8 @@ Scene loadScene(const Settings& settings) {
         throw UsageError(
             fmt::format("There is no scene '{}': give a name that 'gnomon scenes' lists, or a .gltf or .glb file.",
                         settings.scene));
+    if (const Result played = renderer::playAnimation(scene, settings.animation); !played.ok())
+        throw UsageError(played.message());
     // The columns have places of their own for their lights.
     if (settings.lights != 0 && settings.scene != "columns")
         renderer::scatterLights(scene, settings.lights, settings.seed);

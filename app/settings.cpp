@@ -59,6 +59,11 @@ void addSettings(CLI::App& command, Settings& s) {
     command.add_option("--size", s.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
     command.add_option("--camera", s.camera, "A camera's name, #index, or eye:target[:degrees] as in 0,3,8:0,1,0:60")
         ->capture_default_str();
+    command.add_option("--time", s.time, "Seconds into the scene's animations, of the first frame")
+        ->check(CLI::Range(-1e9, 1e9))
+        ->capture_default_str();
+    command.add_option("--animation", s.animation, "The animation to play: its name, #index, default or none")
+        ->capture_default_str();
     command.add_option("--lights", s.lights, "Scatter so many shadowed lights over the scene")
         ->check(CLI::Range(0u, kMostLights));
     command.add_option("--seed", s.seed, "Of scattered lights")

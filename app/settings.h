@@ -17,6 +17,8 @@ struct Settings {
     std::string scene = "courtyard";
     std::string size = "1280x720";
     std::string camera = "default";
+    double time = 0.0;  // seconds, of the first frame
+    std::string animation = "default";
     std::uint32_t lights = 0;
     std::uint64_t seed = 1;
     std::string filter = "pcss";
@@ -35,6 +37,11 @@ struct Settings {
 };
 
 void addSettings(CLI::App& command, Settings& settings);
+
+/// Animation time of a frame, counted from 0; without frames per second time stands still.
+inline double frameTime(double firstSeconds, std::uint64_t frame, double framesPerSecond) {
+    return framesPerSecond > 0.0 ? firstSeconds + static_cast<double>(frame) / framesPerSecond : firstSeconds;
+}
 
 /// Throws UsageError on what no device could do.
 renderer::RendererDesc rendererDescOf(const Settings& settings);

@@ -15,13 +15,14 @@
 #include "renderer/gpu/gpu_scene.h"
 #include "renderer/gpu/timer.h"
 #include "renderer/lighting/lighting.h"
+#include "renderer/scene/pose.h"
 #include "renderer/shadow_atlas/plan.h"
 #include "renderer/shadow_atlas/shadow_atlas.h"
 
 namespace gnomon::renderer {
 namespace {
 
-constexpr std::uint32_t kFramesInFlight = 2;
+constexpr std::uint32_t kFramesInFlight = GpuScene::kFramesInFlight;
 
 void require(const Result& result) {
     if (!result) throw GpuError(result.message());
@@ -115,7 +116,7 @@ ShadowPlanSettings planSettingsOf(const Device& device, const Scene& scene, cons
     const std::uint32_t wanted =
         desc.atlasSizePx != 0 ? desc.atlasSizePx : ShadowAtlasImage::defaultSizePx(device, desc.heightPx);
     settings.atlasSizePx = std::min(std::bit_floor(wanted), largest);
-    const Bounds bounds = worldBounds(scene);
+    const Bounds bounds = animatedBounds(scene, 16);
     if (!bounds.empty()) {
         // Room for what moves, and no box of zero depth.
         const double radius = bounds.radius();
@@ -125,12 +126,22 @@ ShadowPlanSettings planSettingsOf(const Device& device, const Scene& scene, cons
     return settings;
 }
 
+// Floats that far out are coarser than anything a picture could show, and no frame's origin helps.
+void requireReachable(const glm::vec3& position, const char* what, const std::string& name) {
+    constexpr float kFarthestMetres = 1e8f;
+    if (std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) <= kFarthestMetres) return;
+    throw PoseError(std::string("An animation throws the ") + what + " '" + name.substr(0, 60) +
+                    "' farther than 100,000 km from the origin.");
+}
+
 }  // namespace
 
 struct Renderer::State {
     const Device& device;
     RendererDesc desc;
-    std::vector<SceneLight> sceneLights;
+    Scene posable;
+    Pose pose;
+    const std::vector<SceneLight>& sceneLights = pose.lights;
     std::vector<ShadowLight> shadowLights;
     std::unique_ptr<Context> context;
     std::unique_ptr<View> view;
@@ -152,7 +163,8 @@ struct Renderer::State {
     State(const Device& d, const Scene& s, const RendererDesc& r)
         : device(d),
           desc(r),
-          sceneLights(s.lights),
+          posable(posablePart(s)),
+          pose(poseAt(posable, 0.0)),
           context(makeContext(d, r)),
           view(makeView(*context, r)),
           scene(d, s),
@@ -163,7 +175,13 @@ struct Renderer::State {
           timer(d, kFramesInFlight),
           commands{Commands(d), Commands(d)} {
         std::ranges::transform(sceneLights, std::back_inserter(shadowLights), shadowLightOf);
+        takePose();
     }
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+
+    void setTime(double seconds);
+    void takePose();
 
     std::vector<Light> lightsOf(const glm::dvec3& origin, const ShadowPlan& plan) const;
     void selectCasters(const Camera& camera, const glm::dvec3& origin);
@@ -177,6 +195,27 @@ Renderer::Renderer(const Device& device, const Scene& scene, const RendererDesc&
 
 Renderer::~Renderer() {
     if (state_ != nullptr) state_->device.waitIdle();
+}
+
+void Renderer::State::setTime(double seconds) {
+    if (seconds == pose.timeSeconds || !isAnimated(posable)) return;
+    poseAt(posable, seconds, pose);
+    takePose();
+}
+
+void Renderer::State::takePose() {
+    scene.setPose(pose);
+    // What leaves the bounds must still cast; with room to spare, so that the cascades rarely change.
+    const CasterBounds casters = planner.settings().casters;
+    const double reach = scene.reachOfMoved(casters.centre);
+    if (reach > casters.radius) planner.setCasters({casters.centre, 1.25 * reach});
+    for (std::size_t i = 0; i < sceneLights.size(); ++i) {
+        if (sceneLights[i].node == kNone) continue;
+        requireReachable(sceneLights[i].position, "light", sceneLights[i].name);
+        const bool casts = shadowLights[i].casts;
+        shadowLights[i] = shadowLightOf(sceneLights[i]);
+        shadowLights[i].casts = casts;
+    }
 }
 
 std::vector<Light> Renderer::State::lightsOf(const glm::dvec3& origin, const ShadowPlan& plan) const {
@@ -270,8 +309,11 @@ void Renderer::State::recordPasses(VkCommandBuffer c, const GBufferCamera& camer
     view->recordEndFrame(c);
 }
 
-std::uint64_t Renderer::renderFrame(const SceneCamera& sceneCamera, ShadowMode mode) {
+std::uint64_t Renderer::renderFrame(const SceneCamera& cameraAtRest, ShadowMode mode, double timeSeconds) {
     State& s = *state_;
+    s.setTime(timeSeconds);
+    const SceneCamera sceneCamera = posedCamera(s.posable, s.pose, cameraAtRest);
+    requireReachable(glm::vec3(sceneCamera.worldFromCamera[3]), "camera", sceneCamera.name);
     const std::uint64_t number = s.frameNumber;
     Commands& commands = s.commands[number % kFramesInFlight];
     const VkCommandBuffer c = commands.begin();

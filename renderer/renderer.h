@@ -55,7 +55,7 @@ struct FrameReport {
     std::uint32_t atlasSizePx = 0;
 };
 
-/// Not thread safe. Throws GpuError (a std::runtime_error with one sentence).
+/// Not thread safe. Throws GpuError or PoseError (std::runtime_errors with one sentence).
 class Renderer {
 public:
     /// Uploads the scene; it is copied as far as needed and may go afterwards. Lights must have ranges
@@ -65,8 +65,9 @@ public:
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// Records and submits one frame; waits only for the frame before the last. Returns its number.
-    std::uint64_t renderFrame(const SceneCamera& camera, ShadowMode mode);
+    /// Records and submits one frame, which shows the scene's animations at a time; lights follow their nodes, and so
+    /// does the camera, if it is one of the scene's. Waits only for the frame before the last. Returns its number.
+    std::uint64_t renderFrame(const SceneCamera& camera, ShadowMode mode, double timeSeconds = 0.0);
     /// Waits until everything submitted has finished.
     void wait();
     /// Of a frame that has finished (after wait(): of the last two). Throws if it is not known any more.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderer/scene/pose.h"
+
 namespace gnomon::renderer {
 namespace {
 
@@ -24,12 +26,10 @@ float squaredDistance(const glm::vec3& p, const TriangleGrid::Triangle& t) {
     return std::min({toSegment(t.a, t.b), toSegment(t.b, t.c), toSegment(t.c, t.a)});
 }
 
-void addTriangles(const Scene& scene, const Instance& instance, const Primitive& primitive,
-                  std::vector<TriangleGrid::Triangle>& triangles) {
-    const bool mirrored = glm::determinant(glm::mat3(instance.worldFromObject)) < 0.0f;
-    const auto world = [&](std::uint32_t i) {
-        return glm::vec3(instance.worldFromObject * glm::vec4(primitive.positions[i], 1.0f));
-    };
+void addTriangles(const Scene& scene, const glm::mat4& worldFromObject, const Primitive& primitive,
+                  const std::vector<glm::vec3>& positions, std::vector<TriangleGrid::Triangle>& triangles) {
+    const bool mirrored = glm::determinant(glm::mat3(worldFromObject)) < 0.0f;
+    const auto world = [&](std::uint32_t i) { return glm::vec3(worldFromObject * glm::vec4(positions[i], 1.0f)); };
     for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
         TriangleGrid::Triangle t{world(primitive.indices[i]), world(primitive.indices[i + 1]),
                                  world(primitive.indices[i + 2]), scene.materials[primitive.material].doubleSided};
@@ -42,9 +42,13 @@ void addTriangles(const Scene& scene, const Instance& instance, const Primitive&
 }  // namespace
 
 TriangleGrid::TriangleGrid(const Scene& scene) {
-    for (const Instance& instance : scene.instances)
-        for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
-            addTriangles(scene, instance, primitive, triangles_);
+    const Pose rest = restPose(scene);
+    auto posed = rest.deformed.begin();
+    for (std::size_t i = 0; i < scene.instances.size(); ++i)
+        for (const Primitive& primitive : scene.meshes[scene.instances[i].mesh].primitives)
+            addTriangles(scene, glm::mat4(rest.worldFromObject[i]), primitive,
+                         deforms(scene.instances[i], primitive) ? (posed++)->positions : primitive.positions,
+                         triangles_);
     for (const Triangle& t : triangles_)
         for (const glm::vec3& p : {t.a, t.b, t.c}) bounds_.add(p);
     if (triangles_.empty()) return;

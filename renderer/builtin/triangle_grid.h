@@ -20,7 +20,7 @@ public:
         bool backFace;  // the ray met the back of a single-sided triangle: it came from inside a solid
     };
 
-    // Triangles without area are left out. Mirroring instances keep their outward winding.
+    // The scene at rest. Triangles without area are left out. Mirroring instances keep their outward winding.
     explicit TriangleGrid(const Scene& scene);
 
     [[nodiscard]] const std::vector<Triangle>& triangles() const { return triangles_; }

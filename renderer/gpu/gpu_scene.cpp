@@ -1,4 +1,5 @@
-// Draw items, culling and transforms. The upload is in gpu_scene_upload.cpp, materials are in materials.cpp.
+// Draw items, culling and transforms. The upload is in gpu_scene_upload.cpp, poses are in gpu_scene_pose.cpp, materials
+// in materials.cpp.
 #include "renderer/gpu/gpu_scene.h"
 
 #include <algorithm>
@@ -10,7 +11,9 @@ namespace gnomon::renderer {
 
 void GpuScene::placeItem(DrawItem& item) {
     const Geometry& geometry = geometries_[item.geometry];
-    item.mirrored = glm::determinant(glm::dmat3(item.worldFromObject)) < 0.0;
+    const double determinant = glm::determinant(glm::dmat3(item.worldFromObject));
+    item.mirrored = determinant < 0.0;
+    item.hidden = !(std::abs(determinant) > 1e-30);
     // A bound of the largest stretch: the Frobenius norm; the column maximum would be too small under shear.
     const glm::dmat3 m(item.worldFromObject);
     const double columns[3] = {glm::length(m[0]), glm::length(m[1]), glm::length(m[2])};
@@ -39,8 +42,9 @@ void GpuScene::placeItem(DrawItem& item) {
     }
 }
 
-void GpuScene::addItems(const Scene& scene, const std::vector<std::uint32_t>& firstGeometryOfMesh) {
+void GpuScene::addItems(const Scene& scene, const GeometryOfPrimitives& geometryOf) {
     std::uint64_t nextId = 0;
+    std::uint32_t deformed = 0;
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const auto& primitives = scene.meshes[instance.mesh].primitives;
@@ -48,7 +52,8 @@ void GpuScene::addItems(const Scene& scene, const std::vector<std::uint32_t>& fi
             DrawItem item;
             item.instance = i;
             item.meshPrimitive = p;
-            item.geometry = firstGeometryOfMesh[instance.mesh] + p;
+            if (deforms(instance, primitives[p])) item.deformed = deformed++;
+            item.geometry = item.deformed == kNone ? geometryOf[instance.mesh][p] : deformed_[item.deformed].geometry;
             item.material = primitives[p].material;
             item.firstTriangleId = static_cast<std::uint32_t>(nextId);
             item.triangleCount = geometries_[item.geometry].triangleCount;
@@ -75,16 +80,19 @@ void GpuScene::addItems(const Scene& scene, const std::vector<std::uint32_t>& fi
 }
 
 void GpuScene::setInstance(std::uint32_t instance, const glm::dmat4& worldFromObject) {
+    ++castersRevision_;
     for (DrawItem& item : items_) {
         if (item.instance != instance) continue;
+        noteChange(item);
         item.worldFromObject = worldFromObject;
         placeItem(item);
+        noteChange(item);
     }
     transformsDirty_ = true;
-    ++castersRevision_;
 }
 
 void GpuScene::recordTransforms(VkCommandBuffer commands, const glm::dvec3& origin) {
+    recordVertices(commands);
     if (!transformsDirty_ && origin == origin_) return;
     origin_ = origin;
     transformsDirty_ = false;
@@ -128,7 +136,7 @@ void appendRange(std::vector<DrawRange>& out, std::uint32_t item, std::uint32_t 
 void GpuScene::cull(const CullVolume& volume, std::vector<DrawRange>& out) const {
     for (std::uint32_t i = 0; i < items_.size(); ++i) {
         const DrawItem& item = items_[i];
-        if (!volume.mayHold(item.centre, item.radius)) continue;
+        if (item.hidden || !volume.mayHold(item.centre, item.radius)) continue;
         const Geometry& geometry = geometries_[item.geometry];
         for (std::uint32_t c = 0; c < item.clusterCount; ++c) {
             const WorldSphere& sphere = worldClusters_[item.firstWorldCluster + c];
@@ -147,7 +155,7 @@ void GpuScene::candidates(const glm::dvec3& centre, float radius, std::vector<Ca
     };
     for (std::uint32_t i = 0; i < items_.size(); ++i) {
         const DrawItem& item = items_[i];
-        if (!touches(item.centre, item.radius)) continue;
+        if (item.hidden || !touches(item.centre, item.radius)) continue;
         for (std::uint32_t c = item.firstWorldCluster; c < item.firstWorldCluster + item.clusterCount; ++c) {
             if (touches(worldClusters_[c].centre, worldClusters_[c].radius)) out.push_back({i, c});
         }
@@ -190,13 +198,10 @@ std::uint32_t GpuScene::trianglePosition(std::uint32_t triangleId) const {
 std::vector<MemoryRow> GpuScene::memoryRows() const {
     std::uint64_t textures = 0;
     for (const GpuImage& image : images_) textures += image.bytes();
-    return {{"scene positions", positions_.bytes()},
-            {"scene attributes", attributes_.bytes()},
-            {"scene extras", extras_.bytes()},
-            {"scene indices", indices_.bytes()},
-            {"scene draw items", itemBuffer_.bytes()},
-            {"scene materials", materialBuffer_.bytes()},
-            {"scene textures", textures}};
+    return {{"scene positions", positions_.bytes()},    {"scene attributes", attributes_.bytes()},
+            {"scene extras", extras_.bytes()},          {"scene indices", indices_.bytes()},
+            {"scene draw items", itemBuffer_.bytes()},  {"scene materials", materialBuffer_.bytes()},
+            {"scene vertex staging", staging_.bytes()}, {"scene textures", textures}};
 }
 
 }  // namespace gnomon::renderer

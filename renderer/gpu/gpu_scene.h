@@ -7,6 +7,8 @@
 //
 // Large worlds: object positions far from their own origin are stored relative to the primitive's centre, and the
 // matrices are computed in double relative to the frame's origin, so nothing large is ever subtracted in a shader.
+//
+// What deforms has vertices of its own, which are uploaded whenever a pose changes them, and one bound for all of it.
 
 #include <cstdint>
 #include <functional>
@@ -18,6 +20,7 @@
 #include "renderer/gpu/cull_volume.h"
 #include "renderer/gpu/pipeline.h"
 #include "renderer/gpu/resources.h"
+#include "renderer/scene/pose.h"
 #include "renderer/scene/scene.h"
 
 namespace gnomon::renderer {
@@ -33,7 +36,10 @@ struct DrawItem {
     std::uint32_t geometry = 0;                     ///< index into the unique primitives
     std::uint32_t material = 0;
     std::uint32_t firstTriangleId = 0, triangleCount = 0;
-    bool mirrored = false;  ///< the instance's matrix turns the winding around
+    bool mirrored = false;           ///< the instance's matrix turns the winding around
+    bool hidden = false;             ///< the matrix has no inverse: there is nothing to see
+    bool moved = false;              ///< since the scene was made
+    std::uint32_t deformed = kNone;  ///< index into Pose::deformed
     std::uint32_t firstWorldCluster = 0, clusterCount = 0;
     glm::dmat4 worldFromObject{1.0};
     glm::dvec3 centre{0.0};  ///< world bounding sphere
@@ -62,12 +68,22 @@ public:
 
     /// Moves an instance; counts as a change of the casters. Takes effect with the next recordTransforms().
     void setInstance(std::uint32_t instance, const glm::dmat4& worldFromObject);
-    /// Writes the matrices relative to `origin` if it or an instance changed. Outside of rendering, before any drawing
-    /// of the frame. Frames in flight are safe: the order on the queue keeps old frames' matrices until they are done.
+    /// Moves and deforms whatever differs from the last pose (at first: the scene at rest). The pose must be of the
+    /// same scene. Takes effect with the next recordTransforms().
+    void setPose(const Pose& pose);
+    /// How far from a place anything reaches that has moved since the scene was made.
+    [[nodiscard]] double reachOfMoved(const glm::dvec3& from) const;
+    /// Writes the matrices relative to `origin`, and vertices, where they changed. Outside of rendering, before any
+    /// drawing of the frame. Frames in flight are safe, up to kFramesInFlight: the order on the queue keeps old frames'
+    /// matrices and vertices until they are done.
     void recordTransforms(VkCommandBuffer commands, const glm::dvec3& origin);
+    static constexpr std::uint32_t kFramesInFlight = 2;
     [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
     /// Grows whenever a shadow may have changed.
     [[nodiscard]] std::uint64_t castersRevision() const { return castersRevision_; }
+    /// True where something moved or deformed within the volume, left it or came into it, after that revision. Changes
+    /// of long ago are forgotten, and then it is true as well.
+    [[nodiscard]] bool changedSince(std::uint64_t revision, const CullVolume& volume) const;
 
     /// Appends what may be visible, in item order (by material), neighbouring clusters merged.
     void cull(const CullVolume& volume, std::vector<DrawRange>& out) const;
@@ -109,8 +125,27 @@ private:
         float radius;
     };
     [[nodiscard]] const DrawItem* itemOfTriangle(std::uint32_t triangleId) const;
-    void addGeometry(const Primitive& primitive, Streams& streams);
-    void addItems(const Scene& scene, const std::vector<std::uint32_t>& firstGeometryOfMesh);
+    // Vertices of one primitive of one instance.
+    struct Deformed {
+        std::uint32_t geometry = 0, firstVertex = 0;
+        std::vector<glm::vec3> positions, normals;  // as last posed
+        std::vector<glm::vec4> tangents;
+        std::vector<std::uint32_t> attributes;  // as uploaded
+        Bounds bounds;
+        bool dirty = false;
+    };
+    struct CasterChange {
+        std::uint64_t revision;
+        WorldSphere sphere;
+    };
+    using GeometryOfPrimitives = std::vector<std::vector<std::uint32_t>>;
+    /// Deforming primitives are one cluster, in the order of their triangles.
+    void addGeometry(const Primitive& primitive, bool deforms, bool skinned, Streams& streams);
+    GeometryOfPrimitives addGeometries(const Scene& scene, Streams& streams);
+    void addItems(const Scene& scene, const GeometryOfPrimitives& geometryOf);
+    void noteChange(const DrawItem& item);
+    bool takeVertices(const PosedPrimitive& posed, Deformed& deformed);
+    void recordVertices(VkCommandBuffer commands);
     void uploadStreams(const Streams& streams, Uploader& uploader);
     void createMaterials(const Scene& scene, Uploader& uploader);
     void createImages(const Scene& scene, Uploader& uploader);
@@ -125,12 +160,15 @@ private:
     std::vector<DrawItem> items_;
     std::vector<std::uint32_t> itemsById_;  // items in order of firstTriangleId
     std::vector<WorldSphere> worldClusters_;
+    std::vector<Deformed> deformed_;
+    std::vector<CasterChange> changes_;  // by revision
     std::uint32_t triangleCount_ = 0;
-    std::uint64_t castersRevision_ = 1;
+    std::uint64_t castersRevision_ = 1, changesKnownSince_ = 1;
+    std::uint32_t stagingSlot_ = 0;
     glm::dvec3 origin_{0.0};
     bool transformsDirty_ = true;
 
-    Buffer positions_, attributes_, extras_, indices_, itemBuffer_, materialBuffer_;
+    Buffer positions_, attributes_, extras_, indices_, itemBuffer_, materialBuffer_, staging_;
     std::vector<MaterialTraits> traits_;
     std::vector<GpuImage> images_;
     std::vector<std::uint32_t> imageIndex_[2];  // per scene image: index into images_, linear and sRGB

@@ -1,9 +1,10 @@
 // Gathers the scene's geometry into a few large buffers and uploads them.
 #include <algorithm>
-#include <cmath>
 #include <glm/gtc/packing.hpp>
+#include <numeric>
 
 #include "renderer/gpu/gpu_scene.h"
+#include "renderer/gpu/pack_attributes.h"
 #include "renderer/gpu/scene_data.h"
 
 namespace gnomon::renderer {
@@ -14,21 +15,6 @@ namespace {
 // float step is 0.06 mm, below anything the bias of 2 mm would notice.
 constexpr float kFarFromOriginMetres = 1024.0f;
 
-// Octahedral coordinates in [-1, 1].
-glm::vec2 octahedral(glm::vec3 n) {
-    const float sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
-    if (!(sum > 0.0f)) return {0.0f, 0.0f};
-    n /= sum;
-    if (n.z >= 0.0f) return {n.x, n.y};
-    return {(1.0f - std::abs(n.y)) * (n.x >= 0.0f ? 1.0f : -1.0f),
-            (1.0f - std::abs(n.x)) * (n.y >= 0.0f ? 1.0f : -1.0f)};
-}
-
-std::uint32_t packTangent(const glm::vec4& tangent) {
-    // The lowest bit of y is the handedness: half a step of 1/32767 is lost.
-    return (glm::packSnorm2x16(octahedral(glm::vec3(tangent))) & ~0x10000u) | (tangent.w < 0.0f ? 0x10000u : 0u);
-}
-
 }  // namespace
 
 struct GpuScene::Streams {
@@ -36,14 +22,15 @@ struct GpuScene::Streams {
     std::vector<std::uint32_t> attributes, extras, indices;
 };
 
-void GpuScene::addGeometry(const Primitive& primitive, Streams& streams) {
+void GpuScene::addGeometry(const Primitive& primitive, bool deforms, bool skinned, Streams& streams) {
     Geometry geometry;
     const auto firstVertex = static_cast<std::uint32_t>(streams.positions.size() / 3);
     geometry.firstTriangle = static_cast<std::uint32_t>(streams.indices.size() / 3);
     geometry.triangleCount = static_cast<std::uint32_t>(primitive.indices.size() / 3);
     Bounds bounds;
     for (const glm::vec3& p : primitive.positions) bounds.add(p);
-    if (!bounds.empty() && glm::length(bounds.centre()) > kFarFromOriginMetres)
+    // Skinned vertices count from an anchor of their own.
+    if (!skinned && !bounds.empty() && glm::length(bounds.centre()) > kFarFromOriginMetres)
         geometry.offset = glm::dvec3(bounds.centre());
 
     std::vector<glm::vec3> stored(primitive.positions.size());
@@ -58,10 +45,9 @@ void GpuScene::addGeometry(const Primitive& primitive, Streams& streams) {
     geometry.extraOffset = static_cast<std::uint32_t>(streams.extras.size() / kExtraWords) - firstVertex;
     for (std::size_t v = 0; v < stored.size(); ++v) {
         const glm::vec2 uv = primitive.texcoords[0].empty() ? glm::vec2(0.0f) : primitive.texcoords[0][v];
-        streams.attributes.insert(streams.attributes.end(),
-                                  {hasNormals ? glm::packSnorm2x16(octahedral(primitive.normals[v])) : 0u,
-                                   hasTangents ? packTangent(primitive.tangents[v]) : 0u, glm::floatBitsToUint(uv.x),
-                                   glm::floatBitsToUint(uv.y)});
+        streams.attributes.insert(streams.attributes.end(), {hasNormals ? packNormal(primitive.normals[v]) : 0u,
+                                                             hasTangents ? packTangent(primitive.tangents[v]) : 0u,
+                                                             glm::floatBitsToUint(uv.x), glm::floatBitsToUint(uv.y)});
         if (!hasExtras) continue;
         const glm::vec2 uv1 = primitive.texcoords[1].empty() ? uv : primitive.texcoords[1][v];
         const glm::vec4 colour = primitive.colours.empty() ? glm::vec4(1.0f) : primitive.colours[v];
@@ -70,7 +56,21 @@ void GpuScene::addGeometry(const Primitive& primitive, Streams& streams) {
                                glm::packHalf2x16({colour.x, colour.y}), glm::packHalf2x16({colour.z, colour.w})});
     }
 
-    const ClusteredTriangles split = makeClusters(stored, primitive.indices);
+    ClusteredTriangles split;
+    if (deforms) {
+        split.order.resize(geometry.triangleCount);
+        std::iota(split.order.begin(), split.order.end(), 0u);
+        split.clusters.push_back({0, geometry.triangleCount});
+        Deformed deformed;
+        deformed.geometry = static_cast<std::uint32_t>(geometries_.size());
+        deformed.firstVertex = firstVertex;
+        deformed.attributes.assign(
+            streams.attributes.end() - static_cast<std::ptrdiff_t>(kAttributeWords * stored.size()),
+            streams.attributes.end());
+        deformed_.push_back(std::move(deformed));
+    } else {
+        split = makeClusters(stored, primitive.indices);
+    }
     geometry.firstCluster = static_cast<std::uint32_t>(clusters_.size());
     geometry.clusterCount = static_cast<std::uint32_t>(split.clusters.size());
     for (Cluster cluster : split.clusters) {
@@ -107,6 +107,11 @@ void GpuScene::uploadStreams(const Streams& streams, Uploader& uploader) {
     extras_ = upload("scene extras", streams.extras, 0);
     indices_ = upload("scene indices", streams.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
     itemBuffer_ = make("scene draw items", items_.size() * sizeof(GpuDrawItem), 0);
+    VkDeviceSize deformedVertices = 0;
+    for (const Deformed& d : deformed_) deformedVertices += d.attributes.size() / kAttributeWords;
+    if (deformedVertices != 0)
+        staging_ = Buffer(device_, "scene vertex staging", kFramesInFlight * deformedVertices * kDeformedVertexBytes,
+                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload);
 
     const std::vector<VkDescriptorType> types(5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
     sceneSetLayout_ = makeSetLayout(
@@ -117,21 +122,41 @@ void GpuScene::uploadStreams(const Streams& streams, Uploader& uploader) {
     for (std::uint32_t b = 0; b < 5; ++b) writeBuffer(device_, sceneSet_, b, types[b], buffers[b]->handle());
 }
 
+// Each primitive once, and once more for every instance that deforms it.
+GpuScene::GeometryOfPrimitives GpuScene::addGeometries(const Scene& scene, Streams& streams) {
+    GeometryOfPrimitives geometryOf(scene.meshes.size());
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m)
+        geometryOf[m].assign(scene.meshes[m].primitives.size(), kNone);
+    for (const Instance& instance : scene.instances)
+        for (std::size_t p = 0; p < geometryOf[instance.mesh].size(); ++p) {
+            const Primitive& primitive = scene.meshes[instance.mesh].primitives[p];
+            std::uint32_t& geometry = geometryOf[instance.mesh][p];
+            if (geometry != kNone || deforms(instance, primitive)) continue;
+            geometry = static_cast<std::uint32_t>(geometries_.size());
+            addGeometry(primitive, false, false, streams);
+        }
+    for (const Instance& instance : scene.instances)
+        for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
+            if (deforms(instance, primitive)) addGeometry(primitive, true, instance.skin != kNone, streams);
+    return geometryOf;
+}
+
 GpuScene::GpuScene(const Device& device, const Scene& scene) : device_(device) {
     Streams streams;
-    std::vector<std::uint32_t> firstGeometryOfMesh;
-    for (const Mesh& mesh : scene.meshes) {
-        firstGeometryOfMesh.push_back(static_cast<std::uint32_t>(geometries_.size()));
-        for (const Primitive& primitive : mesh.primitives) addGeometry(primitive, streams);
-    }
+    const GeometryOfPrimitives geometryOf = addGeometries(scene, streams);
     for (const Material& material : scene.materials) {
         traits_.push_back({material.alphaMode != AlphaMode::Opaque, material.doubleSided});
     }
-    addItems(scene, firstGeometryOfMesh);
+    addItems(scene, geometryOf);
     Uploader uploader(device);
     uploadStreams(streams, uploader);
     createMaterials(scene, uploader);
     uploader.finish();
+    if (!deformed_.empty()) setPose(restPose(scene));
+    // Nobody has looked yet.
+    for (DrawItem& item : items_) item.moved = false;
+    changes_.clear();
+    castersRevision_ = 1;
 }
 
 }  // namespace gnomon::renderer

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct Node {
     glm::vec3 translation{0.0f};
     glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};  ///< unit
     glm::vec3 scale{1.0f};
+    std::vector<float> weights;       ///< of the morph targets of instances on this node; empty: their mesh's
+    std::optional<glm::mat4> matrix;  ///< in place of the three, where they cannot express it; no channel may move it
 };
 
 struct Skin {
@@ -52,6 +55,7 @@ struct Animation {
     std::string name;
     float durationSeconds = 0.0f;  ///< of its longest channel; played in a loop
     std::vector<AnimationChannel> channels;
+    bool playing = true;  ///< false: an alternative that stands by
 };
 
 }  // namespace gnomon::renderer

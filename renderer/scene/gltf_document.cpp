@@ -1,5 +1,5 @@
 // Opening a glTF file. The JSON is parsed once to check its shape and to take out what the loader reads by itself
-// (buffers, images) or not at all (animations), and the rest goes to tinygltf. Reasons, all met with tinygltf 2.7: it
+// (buffers, images, animations), and the rest goes to tinygltf. Reasons, all met with tinygltf 2.7: it
 // reads eight bytes past a GLB whose last chunk is too long, forms addresses from unchecked image views, drops
 // primitives that it cannot parse without a word, and refuses Draco files when built without Draco.
 
@@ -17,6 +17,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMaxNotes = 48;
+constexpr std::size_t kMaxMotionNumbers = 1u << 27;  // 512 MiB
 
 // Read in full.
 constexpr std::array kSupported = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_materials_emissive_strength",
@@ -56,8 +57,8 @@ json parseJson(std::string_view text) {
 // Every top-level collection that is read is an array of objects.
 void checkCollections(const json& root) {
     if (!root.is_object()) refuse("the JSON's root is not an object");
-    for (const char* name : {"accessors", "bufferViews", "buffers", "cameras", "images", "materials", "meshes", "nodes",
-                             "samplers", "scenes", "skins", "textures"}) {
+    for (const char* name : {"accessors", "animations", "bufferViews", "buffers", "cameras", "images", "materials",
+                             "meshes", "nodes", "samplers", "scenes", "skins", "textures"}) {
         const auto found = root.find(name);
         if (found == root.end()) continue;
         if (!found->is_array()) refuse("'{}' is not an array", name);
@@ -91,6 +92,49 @@ int indexMember(const json& object, const char* name) {
     return value < 0 || value > 0x7FFFFFFF ? 0x7FFFFFFF : static_cast<int>(value);
 }
 
+// As indexMember(), but what is no index is found when somebody needs it.
+int laterIndexMember(const json& object, const char* name) {
+    const auto found = object.find(name);
+    if (found == object.end()) return -1;
+    return found->is_number_integer() ? indexMember(object, name) : 0x7FFFFFFF;
+}
+
+// The objects of an array member; nothing where there is none.
+std::vector<json> objects(const json& object, const char* name) {
+    std::vector<json> out;
+    const auto found = object.find(name);
+    if (found == object.end() || !found->is_array()) return out;
+    for (const json& element : *found) out.push_back(element.is_object() ? element : json::object());
+    return out;
+}
+
+AnimationSource animationSource(const json& from) {
+    AnimationSource out;
+    out.name = stringMember(from, "name");
+    for (const json& sampler : objects(from, "samplers"))
+        out.samplers.push_back({laterIndexMember(sampler, "input"), laterIndexMember(sampler, "output"),
+                                stringMember(sampler, "interpolation")});
+    for (const json& channel : objects(from, "channels")) {
+        const auto target = channel.find("target");
+        if (target == channel.end() || !target->is_object()) continue;
+        out.channels.push_back(
+            {laterIndexMember(channel, "sampler"), laterIndexMember(*target, "node"), stringMember(*target, "path")});
+    }
+    return out;
+}
+
+void checkTargets(const json& primitive, const std::string& mesh) {
+    const auto targets = primitive.find("targets");
+    if (targets == primitive.end()) return;
+    if (!targets->is_array()) refuse("the morph targets of mesh '{}' are not an array", mesh);
+    for (const json& target : *targets) {
+        if (!target.is_object()) refuse("a morph target of mesh '{}' is not an object", mesh);
+        for (const json& index : target)
+            if (!index.is_number_integer())
+                refuse("a morph target of mesh '{}' holds something that is no index", mesh);
+    }
+}
+
 // Checks the parts of meshes that tinygltf would drop without a word. Draco brings its own indices, and tinygltf cannot
 // know that their accessor needs no bufferView, so the reference goes.
 void prepareMeshes(json& root) {
@@ -103,6 +147,7 @@ void prepareMeshes(json& root) {
             for (const json& index : primitive["attributes"])
                 if (!index.is_number_integer())
                     refuse("an attribute of mesh '{}' is not an index", stringMember(mesh, "name"));
+            checkTargets(primitive, stringMember(mesh, "name"));
             const auto extensions = primitive.find("extensions");
             if (extensions != primitive.end() && extensions->is_object() &&
                 extensions->contains("KHR_draco_mesh_compression"))
@@ -172,6 +217,7 @@ void Document::parse(std::string_view text) {
     for (const json& source : root.value("images", json::array()))
         images_.push_back(
             {stringMember(source, "name"), stringMember(source, "uri"), indexMember(source, "bufferView")});
+    for (const json& source : root.value("animations", json::array())) animations_.push_back(animationSource(source));
     for (const char* name : {"buffers", "images", "animations", "extras"}) root.erase(name);
 
     const std::string rest = root.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -246,6 +292,12 @@ std::span<const std::uint8_t> Document::encodedImage(int image, std::vector<std:
         note(fmt::format("Image {} is left out: {}.", image, refusal.what()));
         return {};
     }
+}
+
+void Document::spendMotionNumbers(std::size_t count) {
+    if (count > kMaxMotionNumbers - motionNumbers_)
+        refuse("the morph targets and animations hold more than {} numbers", kMaxMotionNumbers);
+    motionNumbers_ += count;
 }
 
 void Document::note(std::string sentence) {

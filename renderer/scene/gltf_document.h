@@ -57,6 +57,21 @@ struct ImageSource {
     int bufferView = -1;
 };
 
+/// As written: nothing in it has been checked. An index that is none is 0x7FFFFFFF, an absent one -1.
+struct AnimationSource {
+    struct Sampler {
+        int input = -1, output = -1;
+        std::string interpolation;
+    };
+    struct Channel {
+        int sampler = -1, node = -1;
+        std::string path;
+    };
+    std::string name;
+    std::vector<Sampler> samplers;
+    std::vector<Channel> channels;
+};
+
 struct BytesOfView {
     std::span<const std::uint8_t> bytes;
     std::size_t stride = 0;  // 0: tightly packed
@@ -69,6 +84,10 @@ public:
 
     const tinygltf::Model& model() const { return model_; }
     const std::vector<ImageSource>& images() const { return images_; }
+    const std::vector<AnimationSource>& animations() const { return animations_; }
+
+    /// Counts what morph targets and animations are about to hold, because many of them may share the same bytes.
+    void spendMotionNumbers(std::size_t count);
 
     /// The bytes of a bufferView after all checks. They live as long as the document.
     BytesOfView view(int bufferView, std::string_view user);
@@ -98,6 +117,8 @@ private:
     tinygltf::Model model_;
     std::vector<BufferSource> buffers_;
     std::vector<ImageSource> images_;
+    std::vector<AnimationSource> animations_;
+    std::size_t motionNumbers_ = 0;
     std::vector<std::string> notes_;
     std::unordered_set<std::string> noted_;
     std::size_t heldBack_ = 0;

@@ -1,6 +1,7 @@
 #include "renderer/scene/gltf_geometry.h"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include "renderer/scene/gltf_accessor.h"
@@ -47,6 +48,20 @@ public:
         }
         if (vertexCount_ == 0) vertexCount_ = out.size();
         if (out.size() != vertexCount_) refuse("{} has {} elements for {} vertices", what, out.size(), vertexCount_);
+        return out;
+    }
+
+    // Offsets of one attribute of a morph target; empty when it is absent.
+    std::vector<glm::vec3> readTarget(const std::map<std::string, int>& target, const char* name) {
+        const auto found = target.find(name);
+        if (found == target.end()) return {};
+        const std::string what = fmt::format("the morph target's {} of {}", name, user_);
+        document_.spendMotionNumbers(3 * vertexCount_);
+        std::vector<glm::vec3> out = readVectors<3>(document_, found->second, 3, glm::vec3(0.0f), what);
+        if (out.size() != vertexCount_) refuse("{} has {} elements for {} vertices", what, out.size(), vertexCount_);
+        for (const glm::vec3& v : out)
+            if (!(glm::length(v) < kMaxCoordinate))
+                refuse("{} has a number that is not finite or beyond {:g}", what, kMaxCoordinate);
         return out;
     }
 
@@ -160,8 +175,7 @@ void keep(std::vector<T>& attribute, const std::vector<std::uint32_t>& kept) {
 }
 
 // Many files share one vertex buffer between all primitives; each keeps only the vertices that it uses.
-void dropUnusedVertices(LoadedPrimitive& loaded) {
-    Primitive& primitive = loaded.primitive;
+void dropUnusedVertices(Primitive& primitive) {
     std::vector<std::uint32_t> newIndex(primitive.positions.size(), kNone), kept;
     for (std::uint32_t index : primitive.indices)
         if (newIndex[index] == kNone) newIndex[index] = 0;
@@ -178,40 +192,55 @@ void dropUnusedVertices(LoadedPrimitive& loaded) {
     keep(primitive.texcoords[0], kept);
     keep(primitive.texcoords[1], kept);
     keep(primitive.colours, kept);
-    keep(loaded.joints, kept);
-    keep(loaded.weights, kept);
+    keep(primitive.joints, kept);
+    keep(primitive.weights, kept);
+    for (MorphTarget& target : primitive.targets) {
+        keep(target.positions, kept);
+        keep(target.normals, kept);
+        keep(target.tangents, kept);
+    }
 }
 
-void readSkin(Reader& reader, LoadedPrimitive& loaded, Document& document, const std::string& user) {
+void readSkin(Reader& reader, Primitive& primitive, Document& document, const std::string& user) {
     if (!reader.has("JOINTS_0")) return;
     if (!reader.has("WEIGHTS_0")) refuse("{} has JOINTS_0 without WEIGHTS_0", user);
     if (reader.has("JOINTS_1"))
         document.note(fmt::format("{} has more than four joints per vertex; four are used.", user));
     const std::vector<glm::vec4> joints = reader.read<4>("JOINTS_0", 4);
-    loaded.weights = reader.read<4>("WEIGHTS_0", 4);
-    loaded.joints.resize(joints.size());
+    primitive.weights = reader.read<4>("WEIGHTS_0", 4);
+    primitive.joints.resize(joints.size());
     for (std::size_t i = 0; i < joints.size(); ++i) {
-        glm::vec4& weight = loaded.weights[i];
+        glm::vec4& weight = primitive.weights[i];
         for (int c = 0; c < 4; ++c) {
             if (!(joints[i][c] >= 0.0f && joints[i][c] <= 65535.0f))
                 refuse("{} has a joint index that is no index", user);
-            loaded.joints[i][c] = static_cast<std::uint16_t>(joints[i][c]);
             if (!(weight[c] >= 0.0f && weight[c] <= 1.0e6f)) refuse("{} has a joint weight of {}", user, weight[c]);
+            // Where it has no weight a joint may be any number; nobody shall look it up.
+            primitive.joints[i][c] = static_cast<std::uint16_t>(weight[c] > 0.0f || c == 0 ? joints[i][c] : 0.0f);
         }
         const float sum = weight.x + weight.y + weight.z + weight.w;
         weight = sum > 0.0f ? weight / sum : glm::vec4(1.0f, 0.0f, 0.0f, 0.0f);
+        if (weight.x == 0.0f) primitive.joints[i].x = 0;
     }
+}
+
+void readTargets(Reader& reader, const tinygltf::Primitive& source, Primitive& primitive) {
+    for (const auto& from : source.targets) {
+        MorphTarget target;
+        target.positions = reader.readTarget(from, "POSITION");
+        target.normals = reader.readTarget(from, "NORMAL");
+        target.tangents = reader.readTarget(from, "TANGENT");
+        primitive.targets.push_back(std::move(target));
+    }
+}
+
+void computeBounds(Primitive& primitive) {
+    for (std::uint32_t index : primitive.indices) primitive.bounds.add(primitive.positions[index]);
 }
 
 }  // namespace
 
-void computeBounds(Primitive& primitive) {
-    primitive.bounds = Bounds();
-    for (std::uint32_t index : primitive.indices) primitive.bounds.add(primitive.positions[index]);
-}
-
-std::optional<LoadedPrimitive> loadPrimitive(Document& document, const tinygltf::Primitive& source,
-                                             const std::string& user) {
+std::optional<Primitive> loadPrimitive(Document& document, const tinygltf::Primitive& source, const std::string& user) {
     if (source.mode < 0 || source.mode > TINYGLTF_MODE_TRIANGLE_FAN)
         refuse("{} has the unknown mode {}", user, source.mode);
     if (source.mode < TINYGLTF_MODE_TRIANGLES) {
@@ -220,8 +249,7 @@ std::optional<LoadedPrimitive> loadPrimitive(Document& document, const tinygltf:
     }
     Reader reader(document, source, user);
     if (!reader.has("POSITION")) refuse("{} has no POSITION", user);
-    LoadedPrimitive loaded;
-    Primitive& primitive = loaded.primitive;
+    Primitive primitive;
     primitive.positions = reader.read<3>("POSITION", 3);
     for (const glm::vec3& p : primitive.positions)
         if (!(glm::length(p) < kMaxCoordinate))
@@ -242,12 +270,12 @@ std::optional<LoadedPrimitive> loadPrimitive(Document& document, const tinygltf:
     primitive.texcoords[1] = reader.read<2>("TEXCOORD_1", 2);
     primitive.colours = reader.read<4>("COLOR_0", 3, 1.0f);
     if (primitive.normals.empty()) primitive.tangents.clear();
-    readSkin(reader, loaded, document, user);
-    if (!source.targets.empty()) document.note(fmt::format("{} has morph targets, which are not applied.", user));
-    dropUnusedVertices(loaded);
+    readSkin(reader, primitive, document, user);
+    readTargets(reader, source, primitive);
+    dropUnusedVertices(primitive);
     repairAttributes(document, primitive, user);
     computeBounds(primitive);
-    return loaded;
+    return primitive;
 }
 
 }  // namespace gnomon::renderer::gltf

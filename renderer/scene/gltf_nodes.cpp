@@ -12,27 +12,19 @@ glm::vec3 vector3(const std::vector<double>& numbers, glm::vec3 otherwise, const
     return {toFloat(numbers[0], user), toFloat(numbers[1], user), toFloat(numbers[2], user)};
 }
 
-glm::mat4 localTransform(const tinygltf::Node& node, const std::string& user) {
-    if (!node.matrix.empty()) {
-        if (node.matrix.size() != 16) refuse("the matrix of {} has {} numbers", user, node.matrix.size());
-        glm::mat4 matrix;
-        for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = toFloat(node.matrix[static_cast<std::size_t>(i)], user);
-        if (matrix[0].w != 0.0f || matrix[1].w != 0.0f || matrix[2].w != 0.0f || matrix[3].w != 1.0f)
-            refuse("the matrix of {} is not affine", user);
-        return matrix;
-    }
-    glm::quat rotation(1.0f, 0.0f, 0.0f, 0.0f);
-    if (!node.rotation.empty()) {
-        if (node.rotation.size() != 4) refuse("the rotation of {} has {} numbers", user, node.rotation.size());
-        const glm::vec4 q(toFloat(node.rotation[0], user), toFloat(node.rotation[1], user),
-                          toFloat(node.rotation[2], user), toFloat(node.rotation[3], user));
-        const float length = glm::length(q);
-        if (!(length > 1.0e-6f) || !std::isfinite(length)) refuse("the rotation of {} is no quaternion", user);
-        rotation = glm::quat(q.w / length, q.x / length, q.y / length, q.z / length);
-    }
-    const glm::vec3 translation = vector3(node.translation, glm::vec3(0.0f), "translation", user);
-    const glm::vec3 scale = vector3(node.scale, glm::vec3(1.0f), "scale", user);
-    return glm::translate(glm::mat4(1.0f), translation) * glm::mat4_cast(rotation) * glm::scale(glm::mat4(1.0f), scale);
+glm::mat4 readMatrix(const std::vector<double>& numbers, const std::string& user) {
+    if (numbers.size() != 16) refuse("the matrix of {} has {} numbers", user, numbers.size());
+    glm::mat4 matrix;
+    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = toFloat(numbers[static_cast<std::size_t>(i)], user);
+    if (matrix[0].w != 0.0f || matrix[1].w != 0.0f || matrix[2].w != 0.0f || matrix[3].w != 1.0f)
+        refuse("the matrix of {} is not affine", user);
+    return matrix;
+}
+
+glm::mat4 localTransform(const Node& node) {
+    if (node.matrix) return *node.matrix;
+    return glm::translate(glm::mat4(1.0f), node.translation) * glm::mat4_cast(node.rotation) *
+           glm::scale(glm::mat4(1.0f), node.scale);
 }
 
 void checkFinite(const glm::mat4& matrix, const std::string& user) {
@@ -78,7 +70,7 @@ std::vector<PlacedNode> placeNodes(Document& document) {
         if (reached[static_cast<std::size_t>(index)])
             refuse("{} is reached twice, from {} and earlier: the nodes must form a tree", name, user);
         reached[static_cast<std::size_t>(index)] = true;
-        const glm::mat4 world = worldFromParent * localTransform(node, name);
+        const glm::mat4 world = worldFromParent * localTransform(readNode(node, name));
         checkFinite(world, name);
         pending.push_back({index, world});
     };
@@ -95,25 +87,37 @@ std::vector<PlacedNode> placeNodes(Document& document) {
     return placed;
 }
 
-NodeTransforms::NodeTransforms(Document& document) : document_(document), parents_(document.model().nodes.size(), -1) {
+std::vector<int> parentsOf(const Document& document, const std::vector<PlacedNode>& placed) {
     const auto& nodes = document.model().nodes;
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-        for (int child : nodes[i].children)
-            if (child >= 0 && static_cast<std::size_t>(child) < parents_.size())
-                parents_[static_cast<std::size_t>(child)] = static_cast<int>(i);
+    std::vector<int> parents(nodes.size(), -1);
+    const auto claim = [&](int parent) {
+        for (int child : nodes[static_cast<std::size_t>(parent)].children)
+            if (child >= 0 && static_cast<std::size_t>(child) < parents.size())
+                parents[static_cast<std::size_t>(child)] = parent;
+    };
+    for (std::size_t i = 0; i < nodes.size(); ++i) claim(static_cast<int>(i));
+    for (const PlacedNode& node : placed) parents[static_cast<std::size_t>(node.index)] = -1;
+    for (const PlacedNode& node : placed) claim(node.index);
+    return parents;
 }
 
-glm::mat4 NodeTransforms::worldFromNode(int index, std::string_view user) const {
-    const auto& nodes = document_.model().nodes;
-    at(nodes, index, "node", user);
-    glm::mat4 world(1.0f);
-    std::size_t steps = 0;
-    for (int current = index; current != -1; current = parents_[static_cast<std::size_t>(current)]) {
-        if (++steps > nodes.size()) refuse("{} lies on a loop of nodes", nodeName(document_, index));
-        world = localTransform(nodes[static_cast<std::size_t>(current)], nodeName(document_, current)) * world;
+Node readNode(const tinygltf::Node& source, const std::string& user) {
+    Node node;
+    if (!source.matrix.empty()) {
+        node.matrix = readMatrix(source.matrix, user);
+        return node;
     }
-    checkFinite(world, nodeName(document_, index));
-    return world;
+    if (!source.rotation.empty()) {
+        if (source.rotation.size() != 4) refuse("the rotation of {} has {} numbers", user, source.rotation.size());
+        const glm::vec4 q(toFloat(source.rotation[0], user), toFloat(source.rotation[1], user),
+                          toFloat(source.rotation[2], user), toFloat(source.rotation[3], user));
+        const float length = glm::length(q);
+        if (!(length > 1.0e-6f) || !std::isfinite(length)) refuse("the rotation of {} is no quaternion", user);
+        node.rotation = glm::quat(q.w / length, q.x / length, q.y / length, q.z / length);
+    }
+    node.translation = vector3(source.translation, glm::vec3(0.0f), "translation", user);
+    node.scale = vector3(source.scale, glm::vec3(1.0f), "scale", user);
+    return node;
 }
 
 }  // namespace gnomon::renderer::gltf

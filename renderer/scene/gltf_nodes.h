@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "renderer/scene/gltf_document.h"
+#include "renderer/scene/scene.h"
 
 namespace gnomon::renderer::gltf {
 
@@ -22,15 +23,10 @@ std::string nodeName(const Document& document, int index);
 /// parents.
 std::vector<PlacedNode> placeNodes(Document& document);
 
-/// World transforms of any nodes, inside the scene or not, for joints; refuses loops.
-class NodeTransforms {
-public:
-    explicit NodeTransforms(Document& document);
-    glm::mat4 worldFromNode(int index, std::string_view user) const;
+/// Per node its parent or -1. Where two claim a node, the one that is drawn has it.
+std::vector<int> parentsOf(const Document& document, const std::vector<PlacedNode>& placed);
 
-private:
-    Document& document_;
-    std::vector<int> parents_;
-};
+/// A node's own transform, checked; name, parent and weights are left to the caller.
+Node readNode(const tinygltf::Node& node, const std::string& user);
 
 }  // namespace gnomon::renderer::gltf

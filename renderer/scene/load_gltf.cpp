@@ -4,30 +4,34 @@
 #include <map>
 #include <new>
 
-#include "renderer/scene/gltf_accessor.h"
 #include "renderer/scene/gltf_geometry.h"
 #include "renderer/scene/gltf_lights.h"
 #include "renderer/scene/gltf_material.h"
+#include "renderer/scene/gltf_motion.h"
 #include "renderer/scene/gltf_nodes.h"
+#include "renderer/scene/pose.h"
 
 namespace gnomon::renderer {
 namespace gltf {
 namespace {
 
-// A skinned mesh is copied per node that places it; this bounds what a small file can ask for (2 GiB of vertices).
-constexpr std::size_t kMaxSkinnedVertices = 1u << 25;
+// What deforms is copied per node that places it; this bounds what a small file can ask for (2 GiB of vertices).
+constexpr std::size_t kMaxDeformedVertices = 1u << 25;
 constexpr std::size_t kMaxVertices = 1u << 28;
+constexpr float kFarthest = 1.0e15f;
 
 class SceneBuilder {
 public:
     SceneBuilder(Document& document, Scene& scene)
-        : document_(document), scene_(scene), materials_(document, scene), transforms_(document) {}
+        : document_(document),
+          scene_(scene),
+          placed_(placeNodes(document)),
+          materials_(document, scene),
+          motion_(document, placed_, scene) {}
 
     void build() {
-        const std::vector<PlacedNode> placed = placeNodes(document_);
-        for (const PlacedNode& node : placed) {
-            addLight(document_, node, scene_);
-            addCamera(document_, node, scene_);
+        for (const PlacedNode& node : placed_) {
+            addLightAndCamera(node);
             addMesh(node);
         }
         if (document_.model().nodes.empty()) placeAllMeshes();
@@ -37,13 +41,17 @@ public:
         if (scene_.materials.empty()) materials_.use(-1, "the scene");
         materials_.decodeImages();
         for (LoadedMesh& mesh : loaded_) finishMesh(mesh);
+        motion_.loadAnimations();
+        checkRestPose();
     }
 
 private:
     struct LoadedMesh {
         std::string name;
-        std::vector<LoadedPrimitive> primitives;
-        std::uint32_t sceneMesh = kNone;  // its slot once an instance draws it without a skin
+        std::vector<Primitive> primitives;
+        std::vector<float> weights;
+        std::uint32_t sceneMesh = kNone;  // its slot once an instance draws it
+        bool morphs = false;              // some instance has weights that are not zero for ever
     };
 
     // Index in loaded_.
@@ -56,13 +64,38 @@ private:
             const std::string name = fmt::format("primitive {} of mesh {} '{}'", i, index, source.name.substr(0, 60));
             auto primitive = loadPrimitive(document_, source.primitives[i], name);
             if (!primitive) continue;
-            primitive->primitive.material = materials_.use(source.primitives[i].material, name);
-            vertices_ += primitive->primitive.positions.size();
+            primitive->material = materials_.use(source.primitives[i].material, name);
+            vertices_ += primitive->positions.size();
             if (vertices_ > kMaxVertices) refuse("the scene has more than {} vertices", kMaxVertices);
+            if (!mesh.primitives.empty() && mesh.primitives.front().targets.size() != primitive->targets.size())
+                refuse("{} has {} morph targets, the first primitive has {}", name, primitive->targets.size(),
+                       mesh.primitives.front().targets.size());
             mesh.primitives.push_back(std::move(*primitive));
         }
+        if (!mesh.primitives.empty())
+            mesh.weights = weightsOf(source.weights, mesh.primitives.front().targets.size(), "mesh " + source.name);
         loaded_.push_back(std::move(mesh));
         return meshSlots_.emplace(index, loaded_.size() - 1).first->second;
+    }
+
+    static std::vector<float> weightsOf(const std::vector<double>& weights, std::size_t targets,
+                                        const std::string& user) {
+        if (targets == 0 || weights.empty()) return {};
+        if (weights.size() != targets) refuse("{} has {} weights for {} morph targets", user, weights.size(), targets);
+        std::vector<float> out;
+        for (double weight : weights) {
+            out.push_back(toFloat(weight, "a weight of " + user));
+            if (!(std::abs(out.back()) < kFarthest)) refuse("{} has a weight of {}", user, weight);
+        }
+        return out;
+    }
+
+    void addLightAndCamera(const PlacedNode& node) {
+        const std::size_t lights = scene_.lights.size(), cameras = scene_.cameras.size();
+        addLight(document_, node, scene_);
+        addCamera(document_, node, scene_);
+        if (scene_.lights.size() > lights) scene_.lights.back().node = motion_.useIfMoving(node.index, "a light");
+        if (scene_.cameras.size() > cameras) scene_.cameras.back().node = motion_.useIfMoving(node.index, "a camera");
     }
 
     void addMesh(const PlacedNode& node) {
@@ -74,102 +107,93 @@ private:
         const bool skinned = source.skin != -1 && !loaded_[slot].primitives.front().joints.empty();
         if (source.skin != -1 && !skinned)
             document_.note(fmt::format("{} has a skin, but its mesh has no joints; it is drawn rigid.", user));
-        if (skinned) return addSkinned(source, loaded_[slot], user);
-        addInstance(slot, source.name, node.worldFromNode, user);
+        Instance instance;
+        instance.name = source.name;
+        if (skinned) {
+            addSkin(source.skin, loaded_[slot], user, instance);
+        } else {
+            instance.worldFromObject = node.worldFromNode;
+            if (!canPlace(loaded_[slot], instance.worldFromObject, motion_.canMove(node.index), user)) return;
+            instance.node = motion_.useIfMoving(node.index, user);
+        }
+        const bool morphs = addWeights(node.index, source, loaded_[slot], user, instance);
+        if (skinned || morphs)
+            for (const Primitive& primitive : loaded_[slot].primitives) countDeformed(primitive);
+        addInstance(slot, std::move(instance));
     }
 
-    void addInstance(std::size_t slot, const std::string& name, const glm::mat4& worldFromObject,
-                     const std::string& user) {
+    void countDeformed(const Primitive& primitive) {
+        deformedVertices_ += std::max(primitive.positions.size(), primitive.indices.size() / 3);
+        if (deformedVertices_ > kMaxDeformedVertices)
+            refuse("the scene has more than {} vertices that deform", kMaxDeformedVertices);
+    }
+
+    void addInstance(std::size_t slot, Instance instance) {
         LoadedMesh& mesh = loaded_[slot];
-        if (!(std::abs(glm::determinant(glm::mat3(worldFromObject))) > 1.0e-30f)) {
-            document_.note(fmt::format("{} has a scale of zero and is not drawn.", user));
-            return;
-        }
-        for (const LoadedPrimitive& primitive : mesh.primitives) {
-            const Bounds& b = primitive.primitive.bounds;
-            for (int corner = 0; corner < 8; ++corner) {
-                const glm::vec3 p(corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y,
-                                  corner & 4 ? b.max.z : b.min.z);
-                if (!(glm::length(glm::vec3(worldFromObject * glm::vec4(p, 1.0f))) < 1.0e15f))
-                    refuse("{} is placed beyond 1e15 units from the origin", user);
-            }
-        }
         if (mesh.sceneMesh == kNone) {
             mesh.sceneMesh = static_cast<std::uint32_t>(scene_.meshes.size());
             scene_.meshes.emplace_back();
         }
-        scene_.instances.push_back({name, mesh.sceneMesh, worldFromObject});
+        instance.mesh = mesh.sceneMesh;
+        scene_.instances.push_back(std::move(instance));
     }
 
-    std::vector<glm::mat4> jointMatrices(int index, const std::string& user) {
-        const tinygltf::Skin& skin = at(document_.model().skins, index, "skin", user);
-        const std::string name = fmt::format("the inverse bind matrices of skin {}", index);
-        std::vector<glm::mat4> bind(skin.joints.size(), glm::mat4(1.0f));
-        if (skin.inverseBindMatrices != -1) {
-            auto read = readMatrices(document_, skin.inverseBindMatrices, name);
-            if (read.size() < skin.joints.size())
-                refuse("{} are {} for {} joints", name, read.size(), skin.joints.size());
-            bind = std::move(read);
+    // False, with a note, for what will never be seen.
+    bool canPlace(const LoadedMesh& mesh, const glm::mat4& worldFromObject, bool moves, const std::string& user) {
+        if (!moves && !(std::abs(glm::determinant(glm::mat3(worldFromObject))) > 1.0e-30f)) {
+            document_.note(fmt::format("{} has a scale of zero and is not drawn.", user));
+            return false;
         }
-        for (std::size_t i = 0; i < skin.joints.size(); ++i)
-            bind[i] = transforms_.worldFromNode(skin.joints[i], fmt::format("skin {}", index)) * bind[i];
-        bind.resize(skin.joints.size());
-        return bind;
-    }
-
-    // The pose that the nodes store, applied once: world-space vertices under an identity instance (the node's own
-    // transform does not count for a skinned mesh, glTF 2.0 section 3.7.3.3).
-    void addSkinned(const tinygltf::Node& node, const LoadedMesh& source, const std::string& user) {
-        const std::vector<glm::mat4> joints = jointMatrices(node.skin, user);
-        Mesh mesh{source.name, {}};
-        for (const LoadedPrimitive& loaded : source.primitives) {
-            if (loaded.joints.empty()) refuse("{} has a skin, but a primitive of its mesh has no joints", user);
-            skinnedVertices_ += loaded.joints.size();
-            if (skinnedVertices_ > kMaxSkinnedVertices)
-                refuse("the scene has more than {} skinned vertices", kMaxSkinnedVertices);
-            Primitive posed = loaded.primitive;
-            for (std::size_t i = 0; i < posed.positions.size(); ++i) {
-                glm::mat4 blend(0.0f);
-                for (int c = 0; c < 4; ++c) {
-                    if (loaded.weights[i][c] == 0.0f) continue;
-                    const std::size_t joint = loaded.joints[i][c];
-                    if (joint >= joints.size())
-                        refuse("a vertex of {} refers to joint {} of {}", user, joint, joints.size());
-                    blend += loaded.weights[i][c] * joints[joint];
-                }
-                posed.positions[i] = glm::vec3(blend * glm::vec4(posed.positions[i], 1.0f));
-                if (!(glm::length(posed.positions[i]) < 1.0e15f))
-                    refuse("{} is posed beyond 1e15 units from the origin", user);
-                turnDirections(posed, i, glm::mat3(blend));
+        for (const Primitive& primitive : mesh.primitives) {
+            const Bounds& b = primitive.bounds;
+            for (int corner = 0; corner < 8; ++corner) {
+                const glm::vec3 p(corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y,
+                                  corner & 4 ? b.max.z : b.min.z);
+                if (!(glm::length(glm::vec3(worldFromObject * glm::vec4(p, 1.0f))) < kFarthest))
+                    refuse("{} is placed beyond 1e15 units from the origin", user);
             }
-            computeBounds(posed);
-            mesh.primitives.push_back(std::move(posed));
         }
-        document_.note("Skinned meshes stand still, in the pose that the nodes store.");
-        scene_.instances.push_back({node.name, static_cast<std::uint32_t>(scene_.meshes.size()), glm::mat4(1.0f)});
-        scene_.meshes.push_back(std::move(mesh));
+        return true;
     }
 
-    static void turnDirections(Primitive& primitive, std::size_t vertex, const glm::mat3& blend) {
-        const auto turned = [](const glm::vec3& from, const glm::mat3& by) {
-            const glm::vec3 to = by * from;
-            const float length = glm::length(to);
-            return length > 0.0f && std::isfinite(length) ? to / length : from;
-        };
-        // Cofactors: the inverse transpose up to a factor, and defined for every matrix.
-        const glm::mat3 cofactor(glm::cross(blend[1], blend[2]), glm::cross(blend[2], blend[0]),
-                                 glm::cross(blend[0], blend[1]));
-        if (!primitive.normals.empty()) primitive.normals[vertex] = turned(primitive.normals[vertex], cofactor);
-        if (!primitive.tangents.empty()) {
-            glm::vec4& tangent = primitive.tangents[vertex];
-            tangent = glm::vec4(turned(glm::vec3(tangent), blend), tangent.w);
+    void addSkin(int skin, const LoadedMesh& mesh, const std::string& user, Instance& instance) {
+        instance.skin = motion_.useSkin(skin, user);
+        const std::size_t joints = scene_.skins[instance.skin].joints.size();
+        for (const Primitive& primitive : mesh.primitives) {
+            if (primitive.joints.empty()) refuse("{} has a skin, but a primitive of its mesh has no joints", user);
+            for (const glm::u16vec4& of : primitive.joints)
+                for (int c = 0; c < 4; ++c)
+                    if (of[c] >= joints) refuse("a vertex of {} refers to joint {} of {}", user, of[c], joints);
         }
+    }
+
+    // True where the instance's morph targets show.
+    bool addWeights(int node, const tinygltf::Node& source, LoadedMesh& mesh, const std::string& user,
+                    Instance& instance) {
+        const std::size_t targets = mesh.primitives.front().targets.size();
+        if (targets == 0) return false;
+        const std::vector<float> own = weightsOf(source.weights, targets, user);
+        const bool moves = motion_.hasWeightChannel(node);
+        if (moves) motion_.expectWeights(node, targets);
+        if (moves || !own.empty()) {
+            instance.node = motion_.use(node, user);
+            scene_.nodes[instance.node].weights = own;
+        }
+        const std::vector<float>& shown = own.empty() ? mesh.weights : own;
+        const bool morphs = moves || std::any_of(shown.begin(), shown.end(), [](float w) { return w != 0.0f; });
+        mesh.morphs = mesh.morphs || morphs;
+        return morphs;
     }
 
     void placeAllMeshes() {
         for (std::size_t i = 0; i < document_.model().meshes.size(); ++i) {
             const std::size_t slot = loadMesh(static_cast<int>(i), "the file");
-            if (!loaded_[slot].primitives.empty()) addInstance(slot, loaded_[slot].name, glm::mat4(1.0f), "the file");
+            LoadedMesh& mesh = loaded_[slot];
+            if (mesh.primitives.empty()) continue;
+            mesh.morphs = std::any_of(mesh.weights.begin(), mesh.weights.end(), [](float w) { return w != 0.0f; });
+            Instance instance;
+            instance.name = mesh.name;
+            addInstance(slot, std::move(instance));
         }
         if (!scene_.instances.empty())
             document_.note("The file has no nodes; every mesh is drawn once, where it was modelled.");
@@ -186,16 +210,37 @@ private:
         if (source.sceneMesh == kNone) return;
         Mesh& mesh = scene_.meshes[source.sceneMesh];
         mesh.name = source.name;
-        for (LoadedPrimitive& loaded : source.primitives) mesh.primitives.push_back(std::move(loaded.primitive));
+        mesh.primitives = std::move(source.primitives);
+        if (source.morphs)
+            mesh.weights = std::move(source.weights);
+        else
+            for (Primitive& primitive : mesh.primitives) primitive.targets.clear();
+    }
+
+    // Everything later takes for granted that the scene at rest is within a float's range.
+    void checkRestPose() {
+        try {
+            const Pose rest = restPose(scene_);
+            for (const PosedPrimitive& posed : rest.deformed)
+                for (const glm::vec3& p : posed.positions)
+                    if (!(glm::length(p) < kFarthest))
+                        refuse("instance '{}' is posed beyond 1e15 units from the origin",
+                               scene_.instances[posed.instance].name.substr(0, 60));
+        } catch (const PoseError& error) {
+            std::string sentence = error.what();
+            sentence.pop_back();
+            refuse("{}", sentence);
+        }
     }
 
     Document& document_;
     Scene& scene_;
+    std::vector<PlacedNode> placed_;
     MaterialLoader materials_;
-    NodeTransforms transforms_;
+    MotionLoader motion_;
     std::vector<LoadedMesh> loaded_;
     std::map<int, std::size_t> meshSlots_;
-    std::size_t vertices_ = 0, skinnedVertices_ = 0;
+    std::size_t vertices_ = 0, deformedVertices_ = 0;
 };
 
 }  // namespace

@@ -90,7 +90,7 @@ struct Instance {
     std::uint32_t mesh = 0;
     glm::mat4 worldFromObject{1.0f};  // at rest; of a skinned instance: identity
     std::uint32_t node = kNone;       // moves with this node
-    std::uint32_t skin = kNone;       // posed in world space by this skin's joints
+    std::uint32_t skin = kNone;       // posed in world space by this skin's joints; the node's place does not count
 };
 
 /// True when the instance turns clockwise triangles into counter-clockwise ones: swap the front face when drawing it.
@@ -136,14 +136,14 @@ struct Scene {
     std::vector<SceneCamera> cameras;
     std::vector<Node> nodes;  // only those that something hangs on; parents first
     std::vector<Skin> skins;
-    std::vector<Animation> animations;            // all are played at once, each in its own loop
+    std::vector<Animation> animations;            // those that play do so at once, each in its own loop
     glm::vec3 skyColour{0.02f, 0.03f, 0.05f};     // ambient from above and background, W/(m^2 sr) up to exposure
     glm::vec3 groundColour{0.01f, 0.01f, 0.01f};  // ambient from below
     std::optional<float> exposureEv100;           // empty: from the picture
     std::vector<std::string> notes;               // what a loader left out or repaired, one sentence each
 };
 
-/// World bounds of everything that is drawn; empty for a scene without geometry.
+/// World bounds of everything that is drawn, at rest; empty for a scene without geometry.
 Bounds worldBounds(const Scene& scene);
 
 /// Triangles drawn, every instance counted.

@@ -84,6 +84,7 @@ public:
     explicit ShadowPlanner(const ShadowPlanSettings& settings) : settings_(settings) {}
     ShadowPlan plan(std::span<const ShadowLight> lights, const ShadowPlanCamera& camera, const glm::dvec3& origin);
     [[nodiscard]] const ShadowPlanSettings& settings() const { return settings_; }
+    void setCasters(const CasterBounds& casters) { settings_.casters = casters; }
 
 private:
     struct Wish;

@@ -67,8 +67,7 @@ ShadowAtlasImage::ShadowAtlasImage(const Device& device, const GpuScene& scene, 
     masked_ = makeGraphicsPipeline(device, pipeline);
 }
 
-ShadowAtlasImage::Key ShadowAtlasImage::keyOf(const GpuScene& scene, const ShadowLight& light,
-                                              const PlannedView& view) const {
+ShadowAtlasImage::Key ShadowAtlasImage::keyOf(const ShadowLight& light, const PlannedView& view) {
     return {light.position,
             light.direction,
             light.rangeMetres,
@@ -80,26 +79,28 @@ ShadowAtlasImage::Key ShadowAtlasImage::keyOf(const GpuScene& scene, const Shado
             view.x,
             view.y,
             view.layer,
-            view.size,
-            scene.castersRevision()};
+            view.size};
 }
 
 void ShadowAtlasImage::findTasks(const GpuScene& scene, std::span<const ShadowLight> lights, const ShadowPlan& plan,
                                  ShadowAtlasStatistics& statistics) {
     tasks_.clear();
     ranges_.clear();
-    std::unordered_map<std::uint64_t, Key> now;
+    std::unordered_map<std::uint64_t, Drawn> now;
     now.reserve(plan.views.size());
     std::uint32_t candidatesOf = kNone;
     for (const PlannedView& view : plan.views) {
         const ShadowLight& light = lights[view.light];
         const std::uint64_t id = std::uint64_t{view.light} * 8 + view.face;
-        const Key key = keyOf(scene, light, view);
+        const Key key = keyOf(light, view);
+        const auto volume = [&] { return cullVolumeOf(glm::make_mat4(view.view.clipFromWorld), scene.origin()); };
         const auto old = drawn_.find(id);
         // An old key may only stand if nothing else was drawn over its square; squares of one plan never overlap, and a
         // square that was not in the last plan is not in drawn_.
-        const bool cached = old != drawn_.end() && old->second == key;
-        now.emplace(id, key);
+        const bool cached = old != drawn_.end() && old->second.key == key &&
+                            (old->second.castersRevision == scene.castersRevision() ||
+                             !scene.changedSince(old->second.castersRevision, volume()));
+        now.emplace(id, Drawn{key, scene.castersRevision()});
         if (cached) {
             ++statistics.viewsCached;
             continue;
@@ -110,11 +111,11 @@ void ShadowAtlasImage::findTasks(const GpuScene& scene, std::span<const ShadowLi
             scene.candidates(light.position, light.rangeMetres, candidates_);
         }
         const auto first = static_cast<std::uint32_t>(ranges_.size());
-        const CullVolume volume = cullVolumeOf(glm::make_mat4(view.view.clipFromWorld), scene.origin());
         std::vector<DrawRange> visible;
-        scene.cull(volume, candidates_, visible);
+        scene.cull(volume(), candidates_, visible);
         ranges_.insert(ranges_.end(), visible.begin(), visible.end());
         tasks_.push_back({&view, first, static_cast<std::uint32_t>(ranges_.size()) - first});
+        statistics.drawnViews.push_back(static_cast<std::uint32_t>(&view - plan.views.data()));
         ++statistics.viewsDrawn;
     }
     drawn_ = std::move(now);

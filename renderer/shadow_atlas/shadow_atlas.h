@@ -16,6 +16,7 @@ namespace gnomon::renderer {
 
 struct ShadowAtlasStatistics {
     std::uint32_t viewsDrawn = 0, viewsCached = 0;
+    std::vector<std::uint32_t> drawnViews;  ///< indices into ShadowPlan::views
     std::uint32_t draws = 0;
     std::uint64_t triangles = 0;
 };
@@ -31,9 +32,9 @@ public:
     /// Creates the image, wholly unoccluded. The scene gives the set layouts. Throws GpuError.
     ShadowAtlasImage(const Device& device, const GpuScene& scene, std::uint32_t sizePx, std::uint32_t layers = 1);
 
-    /// Draws what changed: a view is drawn again if its light, its rectangle or the scene's casters changed. `lights`
-    /// is what the plan was made from. After GpuScene::recordTransforms() with the plan's origin, outside of rendering.
-    /// Afterwards visible to sampled reads of compute and fragment shaders.
+    /// Draws what changed: a view is drawn again if its light or its rectangle changed, or if something moved in its
+    /// volume. `lights` is what the plan was made from. After GpuScene::recordTransforms() with the plan's origin,
+    /// outside of rendering. Afterwards visible to sampled reads of compute and fragment shaders.
     ShadowAtlasStatistics record(VkCommandBuffer commands, const GpuScene& scene, std::span<const ShadowLight> lights,
                                  const ShadowPlan& plan);
 
@@ -52,14 +53,17 @@ private:
         glm::dvec3 cascadeCentre;
         double cascadeExtent;
         std::uint32_t face, x, y, layer, size;
-        std::uint64_t castersRevision;
         bool operator==(const Key&) const = default;
+    };
+    struct Drawn {
+        Key key;
+        std::uint64_t castersRevision;  // up to which the square is known to be right
     };
     struct Task {
         const PlannedView* view;
         std::uint32_t firstRange, rangeCount;
     };
-    [[nodiscard]] Key keyOf(const GpuScene& scene, const ShadowLight& light, const PlannedView& view) const;
+    [[nodiscard]] static Key keyOf(const ShadowLight& light, const PlannedView& view);
     void findTasks(const GpuScene& scene, std::span<const ShadowLight> lights, const ShadowPlan& plan,
                    ShadowAtlasStatistics& statistics);
     void drawLayer(VkCommandBuffer commands, const GpuScene& scene, std::uint32_t layer,
@@ -72,7 +76,7 @@ private:
     GpuImage image_;
     PipelineLayout layout_;
     Pipeline opaque_, masked_;
-    std::unordered_map<std::uint64_t, Key> drawn_;  // per light * 8 + face
+    std::unordered_map<std::uint64_t, Drawn> drawn_;  // per light * 8 + face
     std::vector<Task> tasks_;
     std::vector<DrawRange> ranges_;
     std::vector<GpuScene::Candidate> candidates_;

@@ -1,0 +1,11 @@
+#pragma once
+// Morph targets, then linear blend skinning.
+
+#include "renderer/scene/pose.h"
+
+namespace gnomon::renderer {
+
+/// Vertices from out.weights (as many as targets, or fewer) and out.objectFromMesh (none: not skinned).
+void deformPrimitive(const Primitive& primitive, PosedPrimitive& out);
+
+}  // namespace gnomon::renderer

@@ -1,0 +1,307 @@
+// Which shadow views are drawn again when something moves, and that a kept view shows what a fresh one would.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
+#include <set>
+
+#include "renderer/renderer.h"
+#include "renderer/shadow_atlas/shadow_atlas.h"
+
+namespace gnomon::renderer {
+namespace {
+
+using Views = std::set<std::pair<std::uint32_t, std::uint32_t>>;  // light, face
+
+Primitive square(float halfSide) {
+    Primitive p;
+    p.positions = {
+        {-halfSide, 0, -halfSide}, {-halfSide, 0, halfSide}, {halfSide, 0, halfSide}, {halfSide, 0, -halfSide}};
+    p.normals.assign(4, {0, 1, 0});
+    p.indices = {0, 1, 2, 0, 2, 3};
+    for (const glm::vec3& v : p.positions) p.bounds.add(v);
+    return p;
+}
+
+glm::mat4 at(const glm::vec3& place) {
+    return glm::translate(glm::mat4(1.0f), place);
+}
+
+// A channel that leads a node along x, y, z within two seconds and back.
+AnimationChannel path(std::uint32_t node, const glm::vec3& from, const glm::vec3& to) {
+    AnimationChannel c;
+    c.node = node;
+    c.times = {0.0f, 1.0f, 2.0f};
+    c.values = {from.x, from.y, from.z, to.x, to.y, to.z, from.x, from.y, from.z};
+    return c;
+}
+
+constexpr std::uint32_t kSpotLeft = 0, kSpotRight = 1, kPoint = 2;
+constexpr std::uint32_t kMover = 1, kFigure = 2;
+
+// A floor of 60 m. Spots look down on it at x = -10 and x = 10, a point light hangs at z = -20. A slab that moves with
+// a node, a strip of two joints of which one turns, and a slab that a morph target lifts.
+Scene makeScene() {
+    Scene scene;
+    scene.materials.resize(1);
+    scene.materials[0].doubleSided = true;
+    scene.meshes = {{"floor", {square(30.0f)}, {}},
+                    {"slab", {square(0.5f)}, {}},
+                    {"strip", {square(0.5f)}, {}},
+                    {"lifted", {square(0.5f)}, {0.0f}}};
+    Primitive& strip = scene.meshes[2].primitives[0];
+    strip.joints = {{0, 0, 0, 0}, {0, 0, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}};
+    strip.weights.assign(4, {1, 0, 0, 0});
+    scene.meshes[3].primitives[0].targets.push_back({std::vector<glm::vec3>(4, {0, 1, 0}), {}, {}});
+    for (const char* name : {"mover", "foot", "hand", "lifted"}) scene.nodes.push_back({name});
+    scene.nodes[0].translation = {-10, 1, 0};
+    scene.nodes[1].translation = {10, 1, 0};
+    scene.nodes[2].parent = 1;
+    scene.nodes[3].translation = {0, 1, -20};
+    scene.skins.push_back({"strip", {1, 2}, {glm::mat4(1.0f), glm::mat4(1.0f)}});
+    scene.instances = {{"floor", 0}, {"mover", 1, at({-10, 1, 0}), 0}, {"strip", 2}, {"lifted", 3, at({0, 1, -20}), 3}};
+    scene.instances[kFigure].skin = 0;
+    scene.lights.resize(3);
+    for (std::uint32_t l : {kSpotLeft, kSpotRight}) {
+        scene.lights[l].kind = LightKind::Spot;
+        scene.lights[l].position = {l == kSpotLeft ? -10 : 10, 6, 0};
+        scene.lights[l].outerConeAngle = 0.4f;
+    }
+    scene.lights[kPoint].position = {0, 3, -20};
+    for (SceneLight& light : scene.lights) {
+        light.rangeMetres = 8.0f;
+        light.intensity = 300.0f;
+        light.sourceRadius = 0.05f;
+    }
+    return scene;
+}
+
+class ShadowCacheTest : public ::testing::Test {
+protected:
+    static VulkanInstance& instance() {
+        static VulkanInstance shared({.validation = true});
+        return shared;
+    }
+    static std::vector<DeviceInfo> suitable() {
+        std::vector<DeviceInfo> out;
+        for (const DeviceInfo& d : instance().listDevices()) {
+            if (d.suitable)
+                out.push_back(d);
+            else
+                std::printf("skipped: %s\n", d.missing.c_str());
+        }
+        return out;
+    }
+    static void expectNoMessages() {
+        EXPECT_EQ(instance().messages().count(), 0u);
+        instance().messages().clear();
+    }
+};
+
+// A scene and its atlas, drawn with one plan for ever.
+struct Rig {
+    explicit Rig(const Device& d, const Scene& s)
+        : device(d), scene(s), gpuScene(d, s), atlas(d, gpuScene, kAtlasPx), pose(restPose(s)) {
+        ShadowPlanSettings settings;
+        settings.atlasSizePx = kAtlasPx;
+        settings.maxSpotPx = settings.maxFacePx = 128;
+        for (const SceneLight& light : s.lights) lights.push_back(shadowLightOf(light));
+        ShadowPlanCamera camera;
+        camera.position = {0, 4, 0};
+        plan = ShadowPlanner(settings).plan(lights, camera, {});
+    }
+    Views draw() {
+        ShadowAtlasStatistics statistics;
+        device.submitAndWait([&](VkCommandBuffer commands) {
+            gpuScene.recordTransforms(commands, {});
+            statistics = atlas.record(commands, gpuScene, lights, plan);
+        });
+        EXPECT_EQ(statistics.viewsDrawn + statistics.viewsCached, plan.views.size());
+        EXPECT_EQ(statistics.viewsDrawn, statistics.drawnViews.size());
+        Views out;
+        for (std::uint32_t v : statistics.drawnViews) out.emplace(plan.views[v].light, plan.views[v].face);
+        return out;
+    }
+    Views move(const glm::vec3& place) {
+        pose.worldFromObject[kMover] = glm::dmat4(at(place));
+        gpuScene.setPose(pose);
+        return draw();
+    }
+    std::vector<std::uint8_t> texels() const {
+        return readImage(device, atlas.image(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    }
+
+    static constexpr std::uint32_t kAtlasPx = 512;
+    const Device& device;
+    Scene scene;
+    GpuScene gpuScene;
+    ShadowAtlasImage atlas;
+    Pose pose;
+    std::vector<ShadowLight> lights;
+    ShadowPlan plan;
+};
+
+const Views kLeft = {{kSpotLeft, 0}}, kRight = {{kSpotRight, 0}};
+
+TEST_F(ShadowCacheTest, OnlyViewsInWhichSomethingMovedAreDrawn) {
+    for (const DeviceInfo& info : suitable()) {
+        SCOPED_TRACE(info.name);
+        std::printf("device: %s\n", info.name.c_str());
+        const Device device(instance(), info);
+        Rig rig(device, makeScene());
+        ASSERT_EQ(rig.plan.views.size(), 8u);
+        EXPECT_EQ(rig.draw().size(), 8u);
+        EXPECT_EQ(rig.draw(), Views());
+        rig.gpuScene.setPose(rig.pose);  // the same again
+        EXPECT_EQ(rig.draw(), Views());
+        EXPECT_EQ(rig.move({-10, 2, 0}), kLeft);  // within
+        EXPECT_EQ(rig.move({-10, 2, 0}), Views());
+        EXPECT_EQ(rig.move({0, 1, 15}), kLeft);                                      // out of it
+        EXPECT_EQ(rig.move({1, 1, 15}), Views());                                    // where no light reaches
+        EXPECT_EQ(rig.move({10, 2, 0}), kRight);                                     // in
+        EXPECT_EQ(rig.move({-10, 2, 0}), (Views{{kSpotLeft, 0}, {kSpotRight, 0}}));  // out of one, into the other
+        EXPECT_EQ(rig.move({0, 1, 15}), kLeft);
+        EXPECT_EQ(rig.move({4, 3, -20}), (Views{{kPoint, 0}}));  // before one face of six
+        EXPECT_EQ(rig.move({4, 3, -24}), (Views{{kPoint, 0}, {kPoint, 5}}));
+        EXPECT_EQ(rig.move({-10, 2, 0}), (Views{{kSpotLeft, 0}, {kPoint, 0}, {kPoint, 5}}));
+
+        // Two moves between two frames: what lies between was never drawn, but may be drawn again.
+        rig.gpuScene.setInstance(kMover, glm::dmat4(at({10, 2, 0})));
+        rig.gpuScene.setInstance(kMover, glm::dmat4(at({0, 1, 15})));
+        const Views both = rig.draw();
+        EXPECT_TRUE(both.contains({kSpotLeft, 0}));
+        EXPECT_FALSE(both.contains({kPoint, 0}));
+        for (int i = 0; i < 3000; ++i)
+            rig.gpuScene.setInstance(kMover, glm::dmat4(at({0, 1, 15.0f + 1e-3f * float(i)})));
+        EXPECT_EQ(rig.draw().size(), 8u);  // more changes than are remembered
+        EXPECT_EQ(rig.draw(), Views());
+    }
+    expectNoMessages();
+}
+
+TEST_F(ShadowCacheTest, WhatDeformsCountsAsMoving) {
+    for (const DeviceInfo& info : suitable()) {
+        SCOPED_TRACE(info.name);
+        const Device device(instance(), info);
+        Rig rig(device, makeScene());
+        rig.draw();
+        Scene moved = rig.scene;
+        moved.nodes[2].rotation = glm::angleAxis(0.5f, glm::vec3(0, 0, 1));
+        rig.gpuScene.setPose(restPose(moved));
+        EXPECT_EQ(rig.draw(), kRight);
+        moved.nodes[3].weights = {0.5f};
+        rig.gpuScene.setPose(restPose(moved));
+        EXPECT_EQ(rig.draw(), (Views{{kPoint, 3}}));
+        rig.gpuScene.setPose(restPose(moved));
+        EXPECT_EQ(rig.draw(), Views());
+        // A scale of zero takes it away, and another brings it back.
+        Pose pose = restPose(moved);
+        const glm::dmat4 whole = pose.worldFromObject[3];
+        pose.worldFromObject[3] = glm::scale(whole, glm::dvec3(0.0));
+        rig.gpuScene.setPose(pose);
+        EXPECT_EQ(rig.draw(), (Views{{kPoint, 3}}));
+        pose.worldFromObject[3] = whole;
+        rig.gpuScene.setPose(pose);
+        EXPECT_EQ(rig.draw(), (Views{{kPoint, 3}}));
+    }
+    expectNoMessages();
+}
+
+Scene animatedScene() {
+    Scene scene = makeScene();
+    Animation animation;
+    animation.durationSeconds = 2.0f;
+    animation.channels = {path(0, {-10, 1, 0}, {10, 2, 1}), path(1, {10, 1, 0}, {9, 1, 0})};
+    AnimationChannel turn;
+    turn.node = 2;
+    turn.path = AnimationChannel::Path::Rotation;
+    turn.times = {0.0f, 2.0f};
+    turn.values = {0, 0, 0, 1, 0, 0, 0.7071068f, 0.7071068f};
+    AnimationChannel lift;
+    lift.node = 3;
+    lift.path = AnimationChannel::Path::Weights;
+    lift.times = {0.0f, 0.7f, 2.0f};
+    lift.values = {0, 1, 0};
+    animation.channels.push_back(turn);
+    animation.channels.push_back(lift);
+    scene.animations.push_back(animation);
+    return scene;
+}
+
+TEST_F(ShadowCacheTest, KeptViewsAreWhatFreshOnesWouldBe) {
+    for (const DeviceInfo& info : suitable()) {
+        SCOPED_TRACE(info.name);
+        const Device device(instance(), info);
+        const Scene scene = animatedScene();
+        Rig kept(device, scene);
+        std::size_t drawn = 0;
+        std::vector<std::uint8_t> before;
+        for (int frame = 0; frame < 8; ++frame) {
+            const double seconds = 0.3 * frame;
+            kept.gpuScene.setPose(poseAt(scene, seconds));
+            drawn += kept.draw().size();
+            Rig fresh(device, scene);
+            fresh.gpuScene.setPose(poseAt(scene, seconds));
+            fresh.draw();
+            const auto texels = kept.texels();
+            EXPECT_EQ(texels, fresh.texels()) << "at " << seconds << " s";
+            EXPECT_NE(texels, before);
+            before = texels;
+        }
+        EXPECT_LT(drawn, 40u);  // of 64
+    }
+    expectNoMessages();
+}
+
+// Vertices and matrices of frames in flight, lights and the camera that follow nodes, time that stands still.
+TEST_F(ShadowCacheTest, RendererFollowsTime) {
+    for (const DeviceInfo& info : suitable()) {
+        SCOPED_TRACE(info.name);
+        const Device device(instance(), info);
+        Scene scene = animatedScene();
+        scene.nodes.push_back({"lamp"});
+        scene.nodes.back().translation = {0, 3, -20};
+        scene.lights[kPoint].node = 4;
+        scene.animations[0].channels.push_back(path(4, {0, 3, -20}, {1, 3, -20}));
+        scene.cameras.resize(1);
+        scene.cameras[0].worldFromCamera =
+            glm::inverse(glm::lookAt(glm::vec3(0, 12, 24), glm::vec3(0, 0, -6), glm::vec3(0, 1, 0)));
+        RendererDesc desc;
+        desc.widthPx = 160;
+        desc.heightPx = 96;
+        desc.atlasSizePx = 512;
+        Renderer kept(device, scene, desc);
+        for (double seconds : {0.0, 0.25, 0.5, 0.75}) kept.renderFrame(scene.cameras[0], ShadowMode::Deferred, seconds);
+        const std::vector<float> moving = kept.readPicture().rgba;
+        const std::vector<std::uint32_t> ids = kept.readTriangleIds();
+        Renderer fresh(device, scene, desc);
+        fresh.renderFrame(scene.cameras[0], ShadowMode::Deferred, 0.75);
+        EXPECT_EQ(moving, fresh.readPicture().rgba);
+        EXPECT_EQ(ids, fresh.readTriangleIds());
+
+        const std::uint64_t still = kept.renderFrame(scene.cameras[0], ShadowMode::Deferred, 0.75);
+        kept.wait();
+        EXPECT_EQ(kept.report(still).shadowViewsDrawn, 0u);
+        EXPECT_EQ(kept.readPicture().rgba, moving);
+        const std::uint64_t looped = kept.renderFrame(scene.cameras[0], ShadowMode::Deferred, 2.75);
+        kept.wait();
+        EXPECT_EQ(kept.report(looped).shadowViewsDrawn, 0u);
+        kept.renderFrame(scene.cameras[0], ShadowMode::Deferred, 1.0);
+        EXPECT_NE(kept.readPicture().rgba, moving);
+
+        // The camera rides on the mover.
+        SceneCamera riding = scene.cameras[0];
+        riding.node = 0;
+        Renderer& riders = fresh;
+        riders.renderFrame(riding, ShadowMode::Deferred, 1.0);
+        SceneCamera placed = scene.cameras[0];
+        placed.worldFromCamera = at({20, 1, 1}) * placed.worldFromCamera;
+        const std::vector<std::uint32_t> ridden = riders.readTriangleIds();
+        riders.renderFrame(placed, ShadowMode::Deferred, 1.0);
+        EXPECT_EQ(ridden, riders.readTriangleIds());
+    }
+    expectNoMessages();
+}
+
+}  // namespace
+}  // namespace gnomon::renderer

@@ -75,12 +75,17 @@ void makeLivingMaterials(Parts& parts) {
     const glm::vec3 wear[] = {{0.17f, 0.22f, 0.40f}, {0.66f, 0.16f, 0.13f}, {0.62f, 0.52f, 0.36f},
                               {0.86f, 0.80f, 0.68f}, {0.28f, 0.36f, 0.26f}, {0.36f, 0.26f, 0.20f}};
     for (std::size_t i = 0; i < m.wear.size(); ++i)
-        m.wear[i] = textured(b, "woven cloth", paintStripes(128, wear[i], 0.9f * wear[i]));
+        m.wear[i] = textured(b, "felted cloth", paintClay(256, wear[i]), 0.12f);
     const glm::vec3 skin[] = {{0.62f, 0.38f, 0.26f}, {0.40f, 0.22f, 0.14f}, {0.52f, 0.30f, 0.20f}};
     const glm::vec3 hair[] = {{0.09f, 0.05f, 0.03f}, {0.03f, 0.025f, 0.022f}, {0.55f, 0.53f, 0.50f}};
+    const glm::vec3 paper[] = {{0.95f, 0.80f, 0.50f}, {0.95f, 0.45f, 0.40f}, {0.50f, 0.85f, 0.85f}};
+    m.leather = plain(b, "leather", {0.06f, 0.035f, 0.02f}, 0.5f);
     for (std::size_t i = 0; i < 3; ++i) {
+        m.paper[i] = plain(b, "paper", paper[i], 0.9f);
+        b.scene.materials[m.paper[i]].doubleSided = b.scene.materials[m.paper[i]].subsurface = true;
+        b.scene.materials[m.paper[i]].emissive = (parts.hour == Hour::Day ? 8.0f : 1.1f) * paper[i] * paper[i];
         m.skin[i] = plain(b, "skin", skin[i], 0.55f);
-        m.hair[i] = plain(b, "hair and leather", hair[i], 0.6f);
+        m.hair[i] = plain(b, "hair", hair[i], 0.6f);
     }
 }
 
@@ -103,7 +108,7 @@ void makeMaterials(Parts& parts) {
     m.water = plain(b, "water", {0.015f, 0.05f, 0.06f}, 0.08f);
     m.spray = plain(b, "spray", {0.55f, 0.66f, 0.70f}, 0.15f);
     m.glow = plain(b, "flame", {0.0f, 0.0f, 0.0f}, 1.0f);
-    b.scene.materials[m.glow].emissive = glm::vec3(1.0f, 0.56f, 0.2f) * 12.0f;
+    b.scene.materials[m.glow].emissive = glm::vec3(1.0f, 0.56f, 0.2f) * (parts.hour == Hour::Day ? 200.0f : 12.0f);
     m.coolGlow = plain(b, "cool lamp", {0.0f, 0.0f, 0.0f}, 1.0f);
     b.scene.materials[m.coolGlow].emissive = glm::vec3(0.35f, 0.65f, 1.0f) * 10.0f;
     const glm::vec3 cream(0.86f, 0.80f, 0.68f);
@@ -141,9 +146,9 @@ static Scene makeCourtyard(const char* name, courtyard::Hour hour) {
     b.camera("arcade", {-12.2f, 1.75f, -10.7f}, {2.0f, 1.55f, -9.3f}, 0.95f);
     b.camera("fountain", {4.6f, 1.45f, 4.4f}, {-0.6f, 1.75f, -1.2f}, 0.9f);
     if (hour == Hour::Day) {
-        b.scene.skyColour = {3.1f, 4.3f, 6.3f};
-        b.scene.groundColour = {2.0f, 1.6f, 1.2f};
-        b.scene.exposureEv100 = 6.3f;
+        b.scene.skyColour = {6.0f, 8.4f, 12.5f};
+        b.scene.groundColour = {4.6f, 3.7f, 2.8f};
+        b.scene.exposureEv100 = 5.0f;
     } else {
         b.scene.skyColour = {0.030f, 0.048f, 0.105f};
         b.scene.groundColour = {0.022f, 0.020f, 0.022f};

@@ -26,6 +26,8 @@ inline constexpr float kLoopSeconds = 12.0f;  // everything that moves is back w
 
 inline constexpr glm::vec3 kRedStall{5.6f, 0, -7.0f};
 inline constexpr float kRedStallTurn = -0.15f;
+inline constexpr glm::vec3 kBlueStall{-6.2f, 0, -7.2f};
+inline constexpr float kBlueStallTurn = 0.1f;
 // Around the fountain, each facing it.
 inline constexpr std::array<glm::vec3, 4> kBenches = {
     glm::vec3(4.6f, 0, 0), {-4.6f, 0, 0}, {0, 0, 4.7f}, {0, 0, -4.7f}};
@@ -37,10 +39,10 @@ enum class Hour { Night, Day, Bench };
 struct Materials {
     std::uint32_t stone, trim, plaster, cobbles, flags, wood, darkWood, clay, tiles, iron, rope, glow, coolGlow, water,
         spray, bronze;
-    std::uint32_t soil, bark, leaves, ivy, blossom, frond, orange, straw, fur, feather, sheetIron, pierced;
+    std::uint32_t soil, bark, leaves, ivy, blossom, frond, orange, straw, fur, feather, sheetIron, pierced, leather;
     std::array<std::uint32_t, 4> cloth;
     std::array<std::uint32_t, 6> wear;  // plain cloth for clothes
-    std::array<std::uint32_t, 3> skin, hair;
+    std::array<std::uint32_t, 3> skin, hair, paper;
 };
 
 struct Side {

@@ -50,8 +50,8 @@ struct Pose {
 
 struct Look {
     enum class Head { Hair, Hood, StrawHat, Cap };
-    std::uint32_t robe, second, skin, hair;  // materials; second: belt, shawl or trousers
-    bool longRobe = true;                    // else a tunic to the knee over trousers
+    std::uint32_t robe, second, skin, hair, leather, straw;  // materials; second: belt, shawl or trousers
+    bool longRobe = true;                                    // else a tunic to the knee over trousers
     bool shawl = false, beard = false;
     Head head = Head::Hair;
     float scale = 1.0f;
@@ -105,7 +105,8 @@ void placeSkinned(SceneBuilder& builder, std::string name, std::vector<Primitive
                   const std::vector<std::uint32_t>& joints, const std::vector<glm::mat4>& jointFromFigure);
 
 /// A channel of `keys` equal steps over one loop; `at` runs from 0 to 1, and 1 gives what 0 gives.
-void animatePlace(Animation& animation, std::uint32_t node, int keys, const std::function<glm::vec3(float)>& translation);
+void animatePlace(Animation& animation, std::uint32_t node, int keys,
+                  const std::function<glm::vec3(float)>& translation);
 void animateTurn(Animation& animation, std::uint32_t node, int keys, const std::function<glm::quat(float)>& rotation);
 
 using PoseAt = std::function<Pose(float)>;  // of the share of the loop that has passed

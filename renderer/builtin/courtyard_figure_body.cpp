@@ -258,15 +258,16 @@ void addBeltAndShawl(Garment& second, bool shawl) {
 }  // namespace
 
 std::vector<Primitive> figureBody(const Look& look) {
-    Garment cloth(look.robe), second(look.second), skin(look.skin), hair(look.hair), shoes(look.hair);
+    Garment cloth(look.robe), second(look.second), skin(look.skin), hair(look.hair), shoes(look.leather);
     addGown(cloth, look.longRobe);
     addArms(cloth, skin, look.longRobe);
     addLegs(second, shoes, look.longRobe);
     addHead(skin, hair, look.shawl ? second : cloth, look);
     addBeltAndShawl(second, look.shawl);
-    if (look.head == Look::Head::StrawHat) addStrawHat(second);
+    Garment straw(look.straw);
+    if (look.head == Look::Head::StrawHat) addStrawHat(straw);
     std::vector<Primitive> all;
-    for (Garment* garment : {&cloth, &second, &skin, &hair, &shoes}) garment->takeInto(all);
+    for (Garment* garment : {&cloth, &second, &skin, &hair, &shoes, &straw}) garment->takeInto(all);
     return all;
 }
 

@@ -88,7 +88,7 @@ void addLanternBearer(Parts& parts) {
                            {-7.4f, -10.2f},
                            {-8.9f, -10.25f},
                            {-9.3f, -10.60f}});
-    Look look{m.wear[0], m.wear[4], m.skin[1], m.hair[1]};
+    Look look{m.wear[0], m.wear[4], m.skin[1], m.hair[1], m.leather, m.straw};
     look.head = Look::Head::Hood;
     const std::uint32_t first = addFigure(parts, "lantern bearer", look, 132, [&](float at) {
         Pose pose;
@@ -133,7 +133,7 @@ void addLadyWithParasol(Parts& parts) {
     const Materials& m = parts.materials;
     const ClosedPath path(
         {{-7.9f, 3.1f}, {-6.6f, 2.4f}, {-5.1f, 2.9f}, {-4.6f, 4.1f}, {-5.3f, 5.2f}, {-6.9f, 5.4f}, {-8.0f, 4.5f}});
-    Look look{m.wear[1], m.wear[3], m.skin[0], m.hair[0]};
+    Look look{m.wear[1], m.wear[3], m.skin[0], m.hair[0], m.leather, m.straw};
     look.shawl = true;
     const std::uint32_t first = addFigure(parts, "lady with a parasol", look, 120, [&](float at) {
         Pose pose;
@@ -164,10 +164,9 @@ std::uint32_t broomMesh(Parts& parts) {
 
 void addSweeper(Parts& parts) {
     const Materials& m = parts.materials;
-    Look look{m.wear[2], m.wear[5], m.skin[1], m.hair[0]};
+    Look look{m.wear[2], m.wear[5], m.skin[1], m.hair[0], m.leather, m.straw};
     look.longRobe = false;
     look.head = Look::Head::StrawHat;
-    look.second = m.straw;
     const std::uint32_t first = addFigure(parts, "sweeper", look, 96, [](float at) {
         Pose pose;
         standAt(pose, {-1.9f, 0, 5.6f}, 2.5f + 0.12f * wave(at, 1));
@@ -192,7 +191,7 @@ void addSweeper(Parts& parts) {
 // On a bench, asleep but for his head, which sinks and jerks up again.
 void addSleeper(Parts& parts) {
     const Materials& m = parts.materials;
-    Look look{m.wear[5], m.wear[2], m.skin[0], m.hair[2]};
+    Look look{m.wear[5], m.wear[2], m.skin[0], m.hair[2], m.leather, m.straw};
     look.longRobe = false;
     look.head = Look::Head::Cap;
     look.beard = true;
@@ -223,7 +222,7 @@ void addSleeper(Parts& parts) {
 
 void addMerchant(Parts& parts) {
     const Materials& m = parts.materials;
-    Look look{m.wear[4], m.wear[3], m.skin[2], m.hair[1]};
+    Look look{m.wear[4], m.wear[3], m.skin[2], m.hair[1], m.leather, m.straw};
     look.longRobe = true;
     look.head = Look::Head::Cap;
     look.beard = true;
@@ -243,7 +242,8 @@ void addMerchant(Parts& parts) {
 
 void addTalkers(Parts& parts) {
     const Materials& m = parts.materials;
-    Look tall{m.wear[3], m.wear[0], m.skin[0], m.hair[0]}, small{m.wear[2], m.wear[1], m.skin[2], m.hair[1]};
+    Look tall{m.wear[3], m.wear[0], m.skin[0], m.hair[0], m.leather, m.straw},
+        small{m.wear[2], m.wear[1], m.skin[2], m.hair[1], m.leather, m.straw};
     tall.longRobe = false;
     tall.second = m.wear[5];
     small.shawl = true;
@@ -270,7 +270,7 @@ void addTalkers(Parts& parts) {
 // Runs around the fountain.
 void addChild(Parts& parts) {
     const Materials& m = parts.materials;
-    Look look{m.wear[1], m.wear[5], m.skin[0], m.hair[1]};
+    Look look{m.wear[1], m.wear[5], m.skin[0], m.hair[1], m.leather, m.straw};
     look.longRobe = false;
     look.scale = 0.64f;
     std::vector<glm::vec2> ring;

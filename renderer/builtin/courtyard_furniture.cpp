@@ -169,7 +169,7 @@ void addStalls(Parts& parts) {
         glm::vec3 at;
         float turn;
     };
-    for (const Stall& stall : {Stall{red, kRedStall, kRedStallTurn}, Stall{blue, {-6.2f, 0, -7.2f}, 0.1f}}) {
+    for (const Stall& stall : {Stall{red, kRedStall, kRedStallTurn}, Stall{blue, kBlueStall, kBlueStallTurn}}) {
         const glm::mat4 frame = placed(stall.at, stall.turn);
         b.place(stall.awning, frame);
         b.place(table, frame * placed({0, 0, 1.2f}));

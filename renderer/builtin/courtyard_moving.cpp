@@ -72,7 +72,8 @@ void placeSkinned(SceneBuilder& builder, std::string name, std::vector<Primitive
     scene.instances.back().skin = static_cast<std::uint32_t>(scene.skins.size() - 1);
 }
 
-void animatePlace(Animation& animation, std::uint32_t node, int keys, const std::function<glm::vec3(float)>& translation) {
+void animatePlace(Animation& animation, std::uint32_t node, int keys,
+                  const std::function<glm::vec3(float)>& translation) {
     AnimationChannel channel = channelOf(node, AnimationChannel::Path::Translation, keys);
     for (int i = 0; i <= keys; ++i) {
         const glm::vec3 at = translation(keyTime(i, keys));
@@ -122,7 +123,8 @@ std::uint32_t addFigure(Parts& parts, const std::string& name, const Look& look,
         }
         if (moves)
             animatePlace(animation, first + j, keys, [&](float at) -> glm::vec3 { return poseOf(at).translation[j]; });
-        if (turns) animateTurn(animation, first + j, keys, [&](float at) -> glm::quat { return poseOf(at).rotation[j]; });
+        if (turns)
+            animateTurn(animation, first + j, keys, [&](float at) -> glm::quat { return poseOf(at).rotation[j]; });
     }
     scene.animations.push_back(std::move(animation));
     return first;

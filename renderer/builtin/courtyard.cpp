@@ -78,12 +78,16 @@ void makeLivingMaterials(Parts& parts) {
         m.wear[i] = textured(b, "felted cloth", paintClay(256, wear[i]), 0.12f);
     const glm::vec3 skin[] = {{0.62f, 0.38f, 0.26f}, {0.40f, 0.22f, 0.14f}, {0.52f, 0.30f, 0.20f}};
     const glm::vec3 hair[] = {{0.09f, 0.05f, 0.03f}, {0.03f, 0.025f, 0.022f}, {0.55f, 0.53f, 0.50f}};
+    const std::uint32_t glow = b.image(paintPaperGlow(128));
     const glm::vec3 paper[] = {{0.95f, 0.80f, 0.50f}, {0.95f, 0.45f, 0.40f}, {0.50f, 0.85f, 0.85f}};
     m.leather = plain(b, "leather", {0.06f, 0.035f, 0.02f}, 0.5f);
     for (std::size_t i = 0; i < 3; ++i) {
         m.paper[i] = plain(b, "paper", paper[i], 0.9f);
-        b.scene.materials[m.paper[i]].doubleSided = b.scene.materials[m.paper[i]].subsurface = true;
-        b.scene.materials[m.paper[i]].emissive = (parts.hour == Hour::Day ? 8.0f : 1.1f) * paper[i] * paper[i];
+        Material& lit = b.scene.materials[m.paper[i]];
+        lit.doubleSided = true;
+        lit.emissive = (parts.hour == Hour::Day ? 45.0f : 1.9f) * paper[i] * paper[i];
+        lit.emissiveTexture.image = glow;
+        lit.emissiveTexture.uvTransform = glm::mat2(1.0f, 0.0f, 0.0f, 2.0f);
         m.skin[i] = plain(b, "skin", skin[i], 0.55f);
         m.hair[i] = plain(b, "hair", hair[i], 0.6f);
     }
@@ -146,9 +150,9 @@ static Scene makeCourtyard(const char* name, courtyard::Hour hour) {
     b.camera("arcade", {-12.2f, 1.75f, -10.7f}, {2.0f, 1.55f, -9.3f}, 0.95f);
     b.camera("fountain", {4.6f, 1.45f, 4.4f}, {-0.6f, 1.75f, -1.2f}, 0.9f);
     if (hour == Hour::Day) {
-        b.scene.skyColour = {6.0f, 8.4f, 12.5f};
-        b.scene.groundColour = {4.6f, 3.7f, 2.8f};
-        b.scene.exposureEv100 = 5.0f;
+        b.scene.skyColour = {5.0f, 7.2f, 11.4f};
+        b.scene.groundColour = {4.2f, 3.1f, 2.1f};
+        b.scene.exposureEv100 = 4.7f;
     } else {
         b.scene.skyColour = {0.030f, 0.048f, 0.105f};
         b.scene.groundColour = {0.022f, 0.020f, 0.022f};

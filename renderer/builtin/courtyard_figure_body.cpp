@@ -62,11 +62,10 @@ private:
 
 // Upright sections from below: height, half-width, half-depth, offset to the front. Rounded between the stations.
 struct Station {
-    float y, wide, deep, front = 0.0f;
+    float y, wide, deep, front = 0.0f, folds = 0.0f;
 };
 
-void upright(ShapeBuilder& shape, std::span<const Station> s, int sides, float x = 0.0f, int steps = 3,
-             float ripple = 0.0f) {
+void upright(ShapeBuilder& shape, std::span<const Station> s, int sides, float x = 0.0f, int steps = 3) {
     std::vector<ShapeBuilder::Ring> rings;
     const auto count = static_cast<int>(s.size());
     for (int i = 0; i + 1 < count; ++i) {
@@ -78,11 +77,12 @@ void upright(ShapeBuilder& shape, std::span<const Station> s, int sides, float x
                 return b + 0.5f * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
             };
             const float wide = std::max(blend(&Station::wide), 0.004f), deep = std::max(blend(&Station::deep), 0.004f);
-            rings.push_back(
-                {{x, glm::mix(at(i).y, at(i + 1).y, t), blend(&Station::front)}, {wide, 0, 0}, {0, 0, -deep}});
+            rings.push_back({{x, glm::mix(at(i).y, at(i + 1).y, t), blend(&Station::front)},
+                             {wide, 0, 0},
+                             {0, 0, -deep},
+                             blend(&Station::folds)});
         }
     }
-    (void)ripple;
     shape.loft(rings, sides);
 }
 
@@ -99,15 +99,18 @@ Influence followSkirt(const glm::vec3& p, float most) {
 }
 
 void addGown(Garment& cloth, bool longRobe) {
-    const Station robe[] = {{0.045f, 0.285f, 0.27f},        {0.10f, 0.272f, 0.258f},        {0.45f, 0.225f, 0.20f},
-                            {0.78f, 0.185f, 0.152f},        {0.93f, 0.168f, 0.135f},        {1.06f, 0.132f, 0.108f},
-                            {1.20f, 0.152f, 0.122f, 0.01f}, {1.33f, 0.176f, 0.126f, 0.01f}, {1.41f, 0.172f, 0.108f},
-                            {1.455f, 0.128f, 0.082f},       {1.485f, 0.07f, 0.065f},        {1.50f, 0.056f, 0.056f}};
-    const Station tunic[] = {{0.58f, 0.232f, 0.20f},         {0.66f, 0.222f, 0.19f},  {0.80f, 0.195f, 0.162f},
-                             {0.93f, 0.172f, 0.138f},        {1.06f, 0.140f, 0.112f}, {1.20f, 0.158f, 0.124f, 0.01f},
-                             {1.33f, 0.184f, 0.128f, 0.01f}, {1.41f, 0.178f, 0.11f},  {1.455f, 0.132f, 0.084f},
-                             {1.485f, 0.07f, 0.065f},        {1.50f, 0.056f, 0.056f}};
-    longRobe ? upright(cloth.shape, robe, 24) : upright(cloth.shape, tunic, 24);
+    const Station robe[] = {{0.045f, 0.285f, 0.27f, 0, 0.07f}, {0.10f, 0.272f, 0.258f, 0, 0.068f},
+                            {0.45f, 0.225f, 0.20f, 0, 0.05f},  {0.78f, 0.185f, 0.152f, 0, 0.02f},
+                            {0.93f, 0.168f, 0.137f},           {1.06f, 0.140f, 0.114f},
+                            {1.20f, 0.156f, 0.126f, 0.01f},    {1.33f, 0.182f, 0.128f, 0.01f},
+                            {1.41f, 0.190f, 0.110f},           {1.45f, 0.150f, 0.086f},
+                            {1.482f, 0.082f, 0.068f},          {1.50f, 0.056f, 0.056f}};
+    const Station tunic[] = {
+        {0.58f, 0.232f, 0.20f, 0, 0.06f}, {0.66f, 0.222f, 0.19f, 0, 0.05f}, {0.80f, 0.195f, 0.162f, 0, 0.02f},
+        {0.93f, 0.172f, 0.138f},          {1.06f, 0.146f, 0.117f},          {1.20f, 0.162f, 0.127f, 0.01f},
+        {1.33f, 0.190f, 0.130f, 0.01f},   {1.41f, 0.194f, 0.112f},          {1.45f, 0.152f, 0.087f},
+        {1.482f, 0.082f, 0.068f},         {1.50f, 0.056f, 0.056f}};
+    longRobe ? upright(cloth.shape, robe, 54) : upright(cloth.shape, tunic, 54);
     cloth.bind([=](const glm::vec3& p) { return followSkirt(p, longRobe ? 0.5f : 0.8f); });
 }
 
@@ -120,9 +123,9 @@ void addArms(Garment& cloth, Garment& skin, bool wideSleeves) {
                                   {1.05f, 0.045f + 0.6f * w, 0.047f + 0.7f * w},
                                   {1.16f, 0.048f, 0.05f},
                                   {1.28f, 0.053f, 0.056f},
-                                  {1.38f, 0.06f, 0.064f},
-                                  {1.43f, 0.052f, 0.056f},
-                                  {1.462f, 0.022f, 0.024f}};
+                                  {1.37f, 0.056f, 0.06f},
+                                  {1.415f, 0.046f, 0.052f},
+                                  {1.442f, 0.02f, 0.024f}};
         upright(cloth.shape, sleeve, 12, x);
         cloth.bind([=](const glm::vec3& p) {
             const float fore = ramp(1.23f, 1.09f, p.y), chest = 0.5f * ramp(1.38f, 1.45f, p.y);
@@ -182,6 +185,9 @@ void addHead(Garment& skin, Garment& hair, Garment& cloth, const Look& look) {
         const float head = ramp(1.46f, 1.55f, p.y);
         return influences({{kHead, head}, {kChest, 1.0f - head}});
     });
+    // The head in its own frame, a little larger than life: figures are seen from afar.
+    const glm::mat4 larger = glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(0, -0.185f, 0)), glm::vec3(1.11f));
+    for (Garment* garment : {&skin, &hair, &cloth}) garment->shape.setTransform(larger);
     const Station face[] = {
         {1.522f, 0.008f, 0.010f, 0.052f},  {1.530f, 0.028f, 0.030f, 0.040f}, {1.552f, 0.048f, 0.060f, 0.026f},
         {1.60f, 0.066f, 0.084f, 0.012f},   {1.66f, 0.074f, 0.092f, 0.004f},  {1.71f, 0.070f, 0.086f, 0.0f},
@@ -216,10 +222,11 @@ void addHead(Garment& skin, Garment& hair, Garment& cloth, const Look& look) {
         cloth.bindTo(kHead);
     }
     if (look.head == Look::Head::Hood) {
-        const Station hood[] = {{1.40f, 0.15f, 0.105f, -0.005f},   {1.46f, 0.125f, 0.10f, -0.012f},
-                                {1.53f, 0.088f, 0.082f, -0.034f},  {1.60f, 0.092f, 0.092f, -0.034f},
-                                {1.68f, 0.098f, 0.108f, -0.02f},   {1.74f, 0.082f, 0.098f, -0.012f},
-                                {1.785f, 0.048f, 0.062f, -0.018f}, {1.805f, 0.012f, 0.016f, -0.026f}};
+        cloth.shape.setTransform(glm::mat4(1.0f));
+        const Station hood[] = {{1.36f, 0.20f, 0.128f, -0.004f},  {1.43f, 0.165f, 0.11f, -0.010f},
+                                {1.49f, 0.104f, 0.09f, -0.028f},  {1.58f, 0.100f, 0.098f, -0.034f},
+                                {1.68f, 0.106f, 0.118f, -0.02f},  {1.745f, 0.092f, 0.110f, -0.012f},
+                                {1.80f, 0.055f, 0.072f, -0.020f}, {1.828f, 0.012f, 0.016f, -0.034f}};
         upright(cloth.shape, hood, 18);
         cloth.bind([](const glm::vec3& p) {
             const float head = ramp(1.44f, 1.56f, p.y);
@@ -229,6 +236,7 @@ void addHead(Garment& skin, Garment& hair, Garment& cloth, const Look& look) {
 }
 
 void addStrawHat(Garment& straw) {
+    straw.shape.setTransform(glm::scale(glm::translate(glm::mat4(1.0f), glm::vec3(0, -0.185f, 0)), glm::vec3(1.11f)));
     const glm::vec2 hat[] = {{0.085f, 1.705f}, {0.235f, 1.685f}, {0.24f, 1.692f}, {0.112f, 1.722f},
                              {0.10f, 1.775f},  {0.08f, 1.815f},  {0.03f, 1.826f}, {0.0f, 1.827f}};
     straw.shape.lathe(hat, 24);
@@ -263,6 +271,7 @@ std::vector<Primitive> figureBody(const Look& look) {
     addArms(cloth, skin, look.longRobe);
     addLegs(second, shoes, look.longRobe);
     addHead(skin, hair, look.shawl ? second : cloth, look);
+    second.shape.setTransform(glm::mat4(1.0f));
     addBeltAndShawl(second, look.shawl);
     Garment straw(look.straw);
     if (look.head == Look::Head::StrawHat) addStrawHat(straw);

@@ -74,7 +74,7 @@ void addArcadeLanterns(Parts& parts) {
         Animation animation{"pierced drum", kLoopSeconds, {}};
         animateTurn(animation, node, 24, turn);
         b.scene.animations.push_back(std::move(animation));
-        addPoint(parts, "pierced drum", at, p.colour, 150.0f, 9.0f, 0.008f);
+        addPoint(parts, "pierced drum", at, p.colour, 130.0f, 8.5f, 0.004f);
     }
 }
 
@@ -99,7 +99,7 @@ void addPostLanterns(Parts& parts) {
     for (const glm::vec2& p : {glm::vec2(6.1f, 2.5f), {-8.9f, 5.0f}, {6.5f, -6.4f}, {-6.9f, -4.2f}}) {
         const glm::vec3 at(p.x, 2.7f, p.y);
         parts.builder.place(mesh, placed(at));
-        addPoint(parts, "post lantern", at, kWarm, 30.0f, 7.0f, 0.015f);
+        addPoint(parts, "post lantern", at, kWarm, 46.0f, 7.5f, 0.015f);
     }
 }
 
@@ -115,7 +115,7 @@ void addWallLamps(Parts& parts) {
                 const glm::vec3 local(x, floor + 2.05f, -kDepth + 0.3f);
                 const glm::vec3 down = inWorld(side, local + glm::vec3(0, -1.0f, 0.28f)) - inWorld(side, local);
                 parts.builder.place(mesh, side.worldFromSide * placed(local));
-                const float candela = floor > 1.0f ? 30.0f : 22.0f;
+                const float candela = floor > 1.0f ? 44.0f : 24.0f;
                 addSpot(parts, "wall lamp", inWorld(side, local), down, colours[next++ % 5], candela, 1.05f, 4.2f,
                         0.02f);
             }
@@ -220,9 +220,9 @@ void addOtherLights(Parts& parts) {
     SceneLight sky;
     sky.name = day ? "sun" : "moon";
     sky.kind = LightKind::Directional;
-    sky.direction = glm::normalize(day ? glm::vec3(-0.62f, -0.60f, -0.52f) : glm::vec3(0.45f, -0.8f, -0.35f));
+    sky.direction = glm::normalize(day ? glm::vec3(-0.62f, -0.60f, -0.50f) : glm::vec3(0.45f, -0.8f, -0.35f));
     sky.colour = day ? glm::vec3(1.0f, 0.77f, 0.50f) : glm::vec3(0.55f, 0.70f, 1.0f);
-    sky.intensity = day ? 260.0f : 0.30f;  // lux
+    sky.intensity = day ? 420.0f : 0.55f;  // lux
     sky.sourceRadius = 0.00465f;
     parts.builder.scene.lights.push_back(sky);
 }

@@ -94,11 +94,11 @@ std::uint32_t courtTreeMesh(Parts& parts, std::uint64_t seed) {
         for (int k = 0; k < 3; ++k)
             addBranch(wood, random, glm::mix(fork, end, 0.55f + 0.12f * static_cast<float>(k)) - glm::vec3(0, 0.05f, 0),
                       end + 0.75f * anyDirection(random) * glm::vec3(1, 0.6f, 1), 0.03f, 0.009f, 5);
-        addCrown(leaves, random, {end + glm::vec3(0, 0.15f, 0), random.between(0.85f, 1.0f), 120, 0.52f});
+        addCrown(leaves, random, {end + glm::vec3(0, 0.15f, 0), random.between(0.85f, 1.0f), 160, 0.46f});
     }
     const glm::vec3 top = fork + glm::vec3(0.05f, 1.9f, 0.1f);
     addBranch(wood, random, fork, top, 0.095f, 0.03f, 8);
-    addCrown(leaves, random, {top + glm::vec3(0, 0.2f, 0), 1.15f, 170, 0.52f});
+    addCrown(leaves, random, {top + glm::vec3(0, 0.2f, 0), 1.15f, 230, 0.46f});
     return parts.builder.mesh("tree", {ring.take(), soil.take(), wood.take(), leaves.take()});
 }
 

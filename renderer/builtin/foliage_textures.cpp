@@ -200,7 +200,7 @@ Image paintFrond(std::uint32_t size) {
         const float t = static_cast<float>(i) / kPinnae, y = 0.07f + 0.85f * t;
         const float length = 0.47f * std::pow(std::sin(kPi * (0.2f + 0.76f * t)), 0.7f);
         for (const float side : {-1.0f, 1.0f})
-            leaf(card, {0.5f, y}, {side, 0.5f + 0.5f * t}, length, 0.17f + 0.06f * t,
+            leaf(card, {0.5f, y}, {side, 0.5f + 0.5f * t}, length, 0.12f + 0.05f * t,
                  varied(random, green * (0.85f + 0.3f * t), 0.1f));
     }
     return card.take();
@@ -219,10 +219,10 @@ Image paintStarCutouts(std::uint32_t size, const glm::vec3& tint) {
             // An eight-pointed star: two squares, one turned by 45 degrees.
             const float square = std::max(std::abs(px), std::abs(py));
             const float turned = 0.70710678f * (std::abs(px) + std::abs(py));
-            const float star = 0.27f - std::min(square, turned);
+            const float star = 0.31f - std::min(square, turned);
             // Small round holes between the stars.
             const float qx = 0.5f - std::abs(px), qy = 0.5f - std::abs(py);
-            const float hole = std::max(0.06f - std::sqrt(qx * qx + py * py), 0.05f - std::sqrt(px * px + qy * qy));
+            const float hole = std::max(0.05f - std::sqrt(qx * qx + py * py), 0.03f - std::sqrt(px * px + qy * qy));
             const float texel = static_cast<float>(kAcross) / static_cast<float>(size);
             const float open = smooth(-0.75f * texel, 0.75f * texel, std::max(star, hole));
             const float hammered = 0.9f + 0.1f * hashUnit(x / 6, y / 6, 7);
@@ -230,6 +230,21 @@ Image paintStarCutouts(std::uint32_t size, const glm::vec3& tint) {
                 image.rgba8.push_back(static_cast<std::uint8_t>(std::clamp(tint[c] * hammered, 0.0f, 1.0f) * 255.0f));
             image.rgba8.push_back(static_cast<std::uint8_t>(255.0f * (1.0f - open) + 0.5f));
         }
+    }
+    return image;
+}
+
+Image paintPaperGlow(std::uint32_t size) {
+    Image image;
+    image.width = 4;
+    image.height = size;
+    for (std::uint32_t y = 0; y < size; ++y) {
+        const float v = (static_cast<float>(y) + 0.5f) / static_cast<float>(size);
+        const float glow = std::exp(-6.0f * (v - 0.55f) * (v - 0.55f)), hoop = std::abs(std::sin(9.0f * kPi * v));
+        const float value = (0.45f + 0.55f * glow) * (0.72f + 0.28f * std::pow(hoop, 0.35f));
+        for (int x = 0; x < 4; ++x)
+            for (int c = 0; c < 4; ++c)
+                image.rgba8.push_back(c == 3 ? std::uint8_t{255} : static_cast<std::uint8_t>(255.0f * value));
     }
     return image;
 }

@@ -16,5 +16,6 @@ Image paintIvy(std::uint32_t size);                                 // lobed lea
 Image paintBlossom(std::uint32_t size);                             // bougainvillea: bracts and some leaves
 Image paintFrond(std::uint32_t size);                               // one palm or fern frond
 Image paintStarCutouts(std::uint32_t size, const glm::vec3& tint);  // sheet metal with stars cut out; repeats
+Image paintPaperGlow(std::uint32_t size);  // a paper lantern's hoops, lit from within; 4 texels wide
 
 }  // namespace gnomon::renderer

@@ -38,10 +38,13 @@ public:
                float heightMetres);
 
     // A closed tube over rings of elliptic section, capped at both ends. At angle a a ring's point is
-    // centre + across * cos a + forward * sin a; rings run towards cross(across, forward).
+    // centre + across * cos a + forward * sin a; rings run towards cross(across, forward). Folds widen and narrow it
+    // by that share, kLoftFolds times around.
     struct Ring {
         glm::vec3 centre, across, forward;
+        float folds = 0.0f;
     };
+    static constexpr int kLoftFolds = 9;
     void loft(std::span<const Ring> rings, int sides);
     // A round bar whose radius changes along its path.
     void branch(std::span<const glm::vec3> path, std::span<const float> radii, int sides);

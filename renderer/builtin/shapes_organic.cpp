@@ -11,9 +11,13 @@ void ShapeBuilder::loft(std::span<const Ring> rings, int sides) {
     const auto first = static_cast<std::uint32_t>(vertexCount());
     const auto around = static_cast<std::uint32_t>(sides) + 1;
     const auto angleOf = [&](int k) { return kTau * static_cast<float>(k % sides) / static_cast<float>(sides); };
+    const auto around2d = [&](std::size_t i, int k) {  // cosine and sine, folded
+        const float a = angleOf(k), fold = std::cos(static_cast<float>(kLoftFolds) * a + 1.3f * std::sin(2.0f * a));
+        return (1.0f + rings[i].folds * fold) * glm::vec2(std::cos(a), std::sin(a));
+    };
     const auto at = [&](std::size_t i, int k) {
-        const float a = angleOf(k);
-        return rings[i].centre + rings[i].across * std::cos(a) + rings[i].forward * std::sin(a);
+        const glm::vec2 d = around2d(i, k);
+        return rings[i].centre + rings[i].across * d.x + rings[i].forward * d.y;
     };
     const float girth = kTau * glm::length(rings[rings.size() / 2].across);
     float arc = 0.0f;
@@ -21,8 +25,8 @@ void ShapeBuilder::loft(std::span<const Ring> rings, int sides) {
         const std::size_t before = i > 0 ? i - 1 : i, after = i + 1 < rings.size() ? i + 1 : i;
         if (i > 0) arc += glm::length(rings[i].centre - rings[before].centre);
         for (int k = 0; k <= sides; ++k) {
-            const float a = angleOf(k), u = static_cast<float>(k) / static_cast<float>(sides);
-            const glm::vec3 tangent = rings[i].forward * std::cos(a) - rings[i].across * std::sin(a);
+            const float u = static_cast<float>(k) / static_cast<float>(sides);
+            const glm::vec3 tangent = at(i, (k + 1) % sides) - at(i, (k + sides - 1) % sides);
             vertex(at(i, k), glm::normalize(glm::cross(tangent, at(after, k) - at(before, k))), {u * girth, -arc});
         }
     }

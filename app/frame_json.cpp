@@ -11,6 +11,7 @@ namespace {
 Json settingsOf(const Settings& s) {
     return {{"camera", s.camera},
             {"lights", s.lights},
+            {"lightDensity", s.lightDensity},
             {"seed", s.seed},
             {"filter", s.filter},
             {"pcfRadius", s.pcfRadius},

@@ -18,6 +18,7 @@ struct Settings {
     std::string size = "1280x720";
     std::string camera = "default";
     std::uint32_t lights = 0;
+    float lightDensity = 0.0f;  // 0: by area, whatever the picture
     std::uint64_t seed = 1;
     std::string filter = "pcss";
     std::uint32_t pcfRadius = 1;

@@ -152,7 +152,7 @@ static Scene makeCourtyard(const char* name, courtyard::Hour hour) {
     if (hour == Hour::Day) {
         b.scene.skyColour = {5.0f, 7.2f, 11.4f};
         b.scene.groundColour = {4.2f, 3.1f, 2.1f};
-        b.scene.exposureEv100 = 4.7f;
+        b.scene.exposureEv100 = 4.35f;
     } else {
         b.scene.skyColour = {0.030f, 0.048f, 0.105f};
         b.scene.groundColour = {0.022f, 0.020f, 0.022f};

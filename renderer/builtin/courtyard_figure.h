@@ -104,10 +104,10 @@ void placeOn(SceneBuilder& builder, std::uint32_t node, std::uint32_t mesh);
 void placeSkinned(SceneBuilder& builder, std::string name, std::vector<Primitive> primitives,
                   const std::vector<std::uint32_t>& joints, const std::vector<glm::mat4>& jointFromFigure);
 
-/// A channel of `keys` equal steps over one loop; `at` runs from 0 to 1, and 1 gives what 0 gives.
-void animatePlace(Animation& animation, std::uint32_t node, int keys,
-                  const std::function<glm::vec3(float)>& translation);
-void animateTurn(Animation& animation, std::uint32_t node, int keys, const std::function<glm::quat(float)>& rotation);
+/// A channel of the scene's one animation, of `keys` equal steps over one loop; `at` runs from 0 to 1, and 1 gives what
+/// 0 gives.
+void animatePlace(Scene& scene, std::uint32_t node, int keys, const std::function<glm::vec3(float)>& translation);
+void animateTurn(Scene& scene, std::uint32_t node, int keys, const std::function<glm::quat(float)>& rotation);
 
 using PoseAt = std::function<Pose(float)>;  // of the share of the loop that has passed
 /// The first of the figure's kJointCount nodes.

@@ -13,7 +13,7 @@ namespace {
 const glm::vec3 kWarm(1.0f, 0.56f, 0.24f), kAmber(1.0f, 0.46f, 0.15f), kCool(0.45f, 0.68f, 1.0f),
     kTeal(0.25f, 0.85f, 0.9f), kRose(1.0f, 0.30f, 0.34f), kGold(1.0f, 0.70f, 0.32f);
 
-constexpr float kBenchReach = 0.62f;  // of the night's ranges: gives 3 shadowed lights per tile, the moon among them
+constexpr float kBenchReach = 0.66f;  // of the night's ranges: gives 3 shadowed lights per tile, the moon among them
 
 SceneLight& addPoint(Parts& parts, const char* name, const glm::vec3& at, const glm::vec3& colour, float candela,
                      float range, float sourceRadius) {
@@ -21,7 +21,7 @@ SceneLight& addPoint(Parts& parts, const char* name, const glm::vec3& at, const 
     light.name = name;
     light.position = at;
     light.colour = colour;
-    light.intensity = candela;
+    light.intensity = parts.hour == Hour::Day ? 2.5f * candela : candela;
     light.rangeMetres = parts.hour == Hour::Bench ? kBenchReach * range : range;
     light.sourceRadius = sourceRadius;
     parts.builder.scene.lights.push_back(light);
@@ -71,9 +71,7 @@ void addArcadeLanterns(Parts& parts) {
         };
         const std::uint32_t node = addNode(b.scene, "pierced drum", kNone, at);
         placeOn(b, node, piercedDrum(parts));
-        Animation animation{"pierced drum", kLoopSeconds, {}};
-        animateTurn(animation, node, 24, turn);
-        b.scene.animations.push_back(std::move(animation));
+        animateTurn(b.scene, node, 24, turn);
         addPoint(parts, "pierced drum", at, p.colour, 130.0f, 8.5f, 0.004f);
     }
 }
@@ -220,7 +218,7 @@ void addOtherLights(Parts& parts) {
     SceneLight sky;
     sky.name = day ? "sun" : "moon";
     sky.kind = LightKind::Directional;
-    sky.direction = glm::normalize(day ? glm::vec3(-0.62f, -0.60f, -0.50f) : glm::vec3(0.45f, -0.8f, -0.35f));
+    sky.direction = glm::normalize(day ? glm::vec3(-0.62f, -0.65f, -0.46f) : glm::vec3(0.45f, -0.8f, -0.35f));
     sky.colour = day ? glm::vec3(1.0f, 0.77f, 0.50f) : glm::vec3(0.55f, 0.70f, 1.0f);
     sky.intensity = day ? 420.0f : 0.55f;  // lux
     sky.sourceRadius = 0.00465f;

@@ -28,6 +28,11 @@ float keyTime(int i, int keys) {
     return static_cast<float>(i % keys) / static_cast<float>(keys);
 }
 
+void addChannel(Scene& scene, AnimationChannel channel) {
+    if (scene.animations.empty()) scene.animations.push_back({"courtyard", kLoopSeconds, {}});
+    scene.animations.front().channels.push_back(std::move(channel));
+}
+
 }  // namespace
 
 std::uint32_t addNode(Scene& scene, std::string name, std::uint32_t parent, const glm::vec3& translation,
@@ -72,17 +77,16 @@ void placeSkinned(SceneBuilder& builder, std::string name, std::vector<Primitive
     scene.instances.back().skin = static_cast<std::uint32_t>(scene.skins.size() - 1);
 }
 
-void animatePlace(Animation& animation, std::uint32_t node, int keys,
-                  const std::function<glm::vec3(float)>& translation) {
+void animatePlace(Scene& scene, std::uint32_t node, int keys, const std::function<glm::vec3(float)>& translation) {
     AnimationChannel channel = channelOf(node, AnimationChannel::Path::Translation, keys);
     for (int i = 0; i <= keys; ++i) {
         const glm::vec3 at = translation(keyTime(i, keys));
         channel.values.insert(channel.values.end(), {at.x, at.y, at.z});
     }
-    animation.channels.push_back(std::move(channel));
+    addChannel(scene, std::move(channel));
 }
 
-void animateTurn(Animation& animation, std::uint32_t node, int keys, const std::function<glm::quat(float)>& rotation) {
+void animateTurn(Scene& scene, std::uint32_t node, int keys, const std::function<glm::quat(float)>& rotation) {
     AnimationChannel channel = channelOf(node, AnimationChannel::Path::Rotation, keys);
     glm::quat before = rotation(0.0f);
     for (int i = 0; i <= keys; ++i) {
@@ -91,7 +95,7 @@ void animateTurn(Animation& animation, std::uint32_t node, int keys, const std::
         channel.values.insert(channel.values.end(), {turn.x, turn.y, turn.z, turn.w});
         before = turn;
     }
-    animation.channels.push_back(std::move(channel));
+    addChannel(scene, std::move(channel));
 }
 
 std::uint32_t addFigure(Parts& parts, const std::string& name, const Look& look, int keys, const PoseAt& poseAt) {
@@ -114,7 +118,6 @@ std::uint32_t addFigure(Parts& parts, const std::string& name, const Look& look,
     const auto poseOf = [&](float at) -> const Pose& {
         return poses[static_cast<std::size_t>(std::lround(at * static_cast<float>(keys))) % poses.size()];
     };
-    Animation animation{name, kLoopSeconds, {}};
     for (std::uint32_t j = 0; j < kJointCount; ++j) {
         bool moves = false, turns = false;
         for (const Pose& pose : poses) {
@@ -122,11 +125,9 @@ std::uint32_t addFigure(Parts& parts, const std::string& name, const Look& look,
             turns = turns || std::abs(glm::dot(pose.rotation[j], rest.rotation[j])) < 1.0f - 1e-6f;
         }
         if (moves)
-            animatePlace(animation, first + j, keys, [&](float at) -> glm::vec3 { return poseOf(at).translation[j]; });
-        if (turns)
-            animateTurn(animation, first + j, keys, [&](float at) -> glm::quat { return poseOf(at).rotation[j]; });
+            animatePlace(scene, first + j, keys, [&](float at) -> glm::vec3 { return poseOf(at).translation[j]; });
+        if (turns) animateTurn(scene, first + j, keys, [&](float at) -> glm::quat { return poseOf(at).rotation[j]; });
     }
-    scene.animations.push_back(std::move(animation));
     return first;
 }
 

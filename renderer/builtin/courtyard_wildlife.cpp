@@ -61,7 +61,6 @@ std::uint32_t catHeadMesh(Parts& parts) {
 // A sitting cat of 0.42 m; its head is a node of its own, its tail a chain of nodes.
 void addCat(Parts& parts, const glm::vec3& place, float turn) {
     SceneBuilder& b = parts.builder;
-    Animation animation{"cat", kLoopSeconds, {}};
     const std::uint32_t root = addNode(b.scene, "cat", kNone, place, about({0, 1, 0}, turn));
     b.place(catBodyMesh(parts), worldFromNode(b.scene, root));
     const auto look = [](float at) -> glm::quat {
@@ -70,7 +69,7 @@ void addCat(Parts& parts, const glm::vec3& place, float turn) {
     };
     const std::uint32_t head = addNode(b.scene, "cat's head", root, {0, 0.30f, 0.045f}, look(0.0f));
     placeOn(b, head, catHeadMesh(parts));
-    animateTurn(animation, head, 60, look);
+    animateTurn(b.scene, head, 60, look);
 
     constexpr int kTail = 5;
     constexpr float kPiece = 0.075f;
@@ -87,7 +86,7 @@ void addCat(Parts& parts, const glm::vec3& place, float turn) {
         const glm::vec3 from = joints.empty() ? glm::vec3(0, 0.035f, -0.15f) : glm::vec3(0, 0, -kPiece);
         joints.push_back(addNode(b.scene, "cat's tail", parent, from, curl(0.0f)));
         jointFromFigure.push_back(glm::translate(glm::mat4(1.0f), glm::vec3(0, 0, kPiece * static_cast<float>(i))));
-        animateTurn(animation, joints.back(), 96, curl);
+        animateTurn(b.scene, joints.back(), 96, curl);
     }
     ShapeBuilder tail(parts.materials.fur);
     std::vector<glm::vec3> path;
@@ -106,7 +105,6 @@ void addCat(Parts& parts, const glm::vec3& place, float turn) {
         p.weights.emplace_back(1.0f - next, next, 0.0f, 0.0f);
     }
     placeSkinned(b, "cat's tail", {std::move(p)}, joints, jointFromFigure);
-    b.scene.animations.push_back(std::move(animation));
 }
 
 // Zero-thickness wings, a slim body; 0.34 m across.
@@ -136,7 +134,6 @@ void addSwallows(Parts& parts) {
         wingMesh[right] = b.mesh("swallow's wing", {wing.take()});
     }
     constexpr int kSwallows = 5;
-    Animation animation{"swallows", kLoopSeconds, {}};
     for (int i = 0; i < kSwallows; ++i) {
         const float offset = 0.21f * static_cast<float>(i) + 0.02f * static_cast<float>(i * i),
                     k = static_cast<float>(i);
@@ -152,8 +149,8 @@ void addSwallows(Parts& parts) {
         };
         const std::uint32_t root = addNode(b.scene, "swallow", kNone, place(0.0f), heading(0.0f));
         placeOn(b, root, bodyMesh);
-        animatePlace(animation, root, 96, place);
-        animateTurn(animation, root, 96, heading);
+        animatePlace(b.scene, root, 96, place);
+        animateTurn(b.scene, root, 96, heading);
         for (const int right : {0, 1}) {
             const float s = right != 0 ? -1.0f : 1.0f;
             const auto flap = [=](float at) -> glm::quat {  // bursts of beats between glides
@@ -163,10 +160,9 @@ void addSwallows(Parts& parts) {
             const std::uint32_t wing =
                 addNode(b.scene, "swallow's wing", root, {0.012f * s, 0.006f, 0.02f}, flap(0.0f));
             placeOn(b, wing, wingMesh[right]);
-            animateTurn(animation, wing, 480, flap);
+            animateTurn(b.scene, wing, 480, flap);
         }
     }
-    b.scene.animations.push_back(std::move(animation));
 }
 
 // A cock in sheet metal that turns with the wind, back and forth.
@@ -201,9 +197,7 @@ void addVane(Parts& parts) {
     };
     const std::uint32_t node = addNode(b.scene, "vane", kNone, top, swing(0.0f));
     placeOn(b, node, b.mesh("vane", {plate.take()}));
-    Animation animation{"vane", kLoopSeconds, {}};
-    animateTurn(animation, node, 96, swing);
-    b.scene.animations.push_back(std::move(animation));
+    animateTurn(b.scene, node, 96, swing);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ Json settingsOf(const Settings& s) {
             {"time", s.time},
             {"animation", s.animation},
             {"lights", s.lights},
+            {"lightDensity", s.lightDensity},
             {"seed", s.seed},
             {"filter", s.filter},
             {"pcfRadius", s.pcfRadius},

@@ -54,7 +54,14 @@ Scene loadFile(const std::string& name) {
     return scene;
 }
 
-Scene loadScene(const Settings& settings) {
+renderer::SceneCamera cameraOf(const Settings& settings, const Scene& scene) {
+    renderer::SceneCamera camera;
+    const Result parsed = renderer::parseCamera(settings.camera, scene, camera);
+    if (!parsed.ok()) throw UsageError(parsed.message());
+    return camera;
+}
+
+Scene loadScene(const Settings& settings, const renderer::RendererDesc& desc) {
     renderer::BuiltinOptions options;
     options.seed = settings.seed;
     options.lightCount = settings.lights;
@@ -70,18 +77,16 @@ Scene loadScene(const Settings& settings) {
                         settings.scene));
     if (const Result played = renderer::playAnimation(scene, settings.animation); !played.ok())
         throw UsageError(played.message());
-    // The columns have places of their own for their lights.
-    if (settings.lights != 0 && settings.scene != "columns")
+    renderer::TileDensity density;
+    if (settings.lightDensity > 0.0f) {
+        density = {settings.lightDensity, cameraOf(settings, scene), desc.widthPx, desc.heightPx};
+        renderer::scatterLights(scene, settings.lights, settings.seed, &density);
+    } else if (settings.lights != 0 && settings.scene != "columns") {
+        // The columns have places of their own for their lights.
         renderer::scatterLights(scene, settings.lights, settings.seed);
+    }
     renderer::completeLights(scene);
     return scene;
-}
-
-renderer::SceneCamera cameraOf(const Settings& settings, const Scene& scene) {
-    renderer::SceneCamera camera;
-    const Result parsed = renderer::parseCamera(settings.camera, scene, camera);
-    if (!parsed.ok()) throw UsageError(parsed.message());
-    return camera;
 }
 
 // Floats that far out are coarser than anything a picture could show, and no frame's origin helps.
@@ -111,7 +116,7 @@ Session::Session(const renderer::VulkanInstance& instance, const Settings& setti
     : settings_(settings),
       desc_(rendererDescOf(settings)),
       device_(instance, fitting(chooseDevice(instance, settings), desc_)),
-      scene_(loadScene(settings)),
+      scene_(loadScene(settings, desc_)),
       camera_(cameraOf(settings, scene_)) {
     checkReachable(scene_, camera_);
     sayProgress(fmt::format("Scene {}: {} triangles, {} lights.", settings.scene, renderer::triangleCount(scene_),

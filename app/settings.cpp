@@ -66,6 +66,13 @@ void addSettings(CLI::App& command, Settings& s) {
         ->capture_default_str();
     command.add_option("--lights", s.lights, "Scatter so many shadowed lights over the scene")
         ->check(CLI::Range(0u, kMostLights));
+    command
+        .add_option(
+            "--light-density", s.lightDensity,
+            "Shadowed lights per tile, in the mean, that --lights shall give in this picture; they take the place "
+            "of the scene's own point and spot lights")
+        ->check(CLI::Range(0.1f, 64.0f))
+        ->needs("--lights");
     command.add_option("--seed", s.seed, "Of scattered lights")
         ->check(CLI::Range(std::int64_t{0}, std::int64_t{0xFFFFFFFF}))
         ->capture_default_str();

@@ -20,6 +20,7 @@ struct Settings {
     double time = 0.0;  // seconds, of the first frame
     std::string animation = "default";
     std::uint32_t lights = 0;
+    float lightDensity = 0.0f;  // 0: by area, whatever the picture
     std::uint64_t seed = 1;
     std::string filter = "pcss";
     std::uint32_t pcfRadius = 1;

@@ -14,8 +14,12 @@ struct Entry {
 };
 
 constexpr std::array kEntries = {
-    Entry{"courtyard", "A courtyard at night: arcades, lanterns, cloth; 24 shadowed lights and a moon.",
-          [](const BuiltinOptions&) { return makeCourtyard(); }},
+    Entry{"courtyard", "A courtyard at night: arcades, lanterns, cloth, leaves, people who move; a moon.",
+          [](const BuiltinOptions&) { return makeCourtyardNight(); }},
+    Entry{"courtyard-day", "The courtyard under a low sun, with the lanterns in its shade lit.",
+          [](const BuiltinOptions&) { return makeCourtyardDay(); }},
+    Entry{"courtyard-bench", "The courtyard at night, lit so that about 3 shadowed lights reach a tile at 3840x2160.",
+          [](const BuiltinOptions&) { return makeCourtyardBench(); }},
     Entry{"empty-plane", "A plane and one spot.", [](const BuiltinOptions&) { return makeEmptyPlane(); }},
     Entry{"sphere-on-plane", "A sphere of 1 m over a plane, one point light: penumbrae with closed forms.",
           [](const BuiltinOptions&) { return makeSphereOnPlane(); }},

@@ -1,5 +1,6 @@
 #include "renderer/builtin/courtyard.h"
 
+#include "renderer/builtin/foliage_textures.h"
 #include "renderer/builtin/procedural_textures.h"
 #include "renderer/builtin/scenes.h"
 
@@ -37,6 +38,61 @@ std::uint32_t plain(SceneBuilder& builder, const char* name, const glm::vec3& co
     return builder.material(std::move(material));
 }
 
+// Seen from both sides, and lit through.
+std::uint32_t foliage(SceneBuilder& builder, const char* name, Image image, float roughness, bool thin = true) {
+    Material material;
+    material.name = name;
+    material.metallic = 0.0f;
+    material.roughness = roughness;
+    material.alphaMode = AlphaMode::Mask;
+    material.alphaCutoff = kFoliageCutoff;
+    material.doubleSided = true;
+    material.subsurface = thin;
+    material.baseColourTexture.image = builder.image(std::move(image));
+    return builder.material(std::move(material));
+}
+
+// For plants, people and animals.
+void makeLivingMaterials(Parts& parts) {
+    SceneBuilder& b = parts.builder;
+    Materials& m = parts.materials;
+    m.soil = textured(b, "soil", paintClay(128, {0.27f, 0.20f, 0.14f}));
+    m.bark = textured(b, "bark", paintPlanks(256, {0.44f, 0.36f, 0.27f}));
+    m.leaves = foliage(b, "leaves", paintBroadLeaves(512), 0.5f);
+    m.ivy = foliage(b, "ivy", paintIvy(512), 0.55f);
+    m.blossom = foliage(b, "blossom", paintBlossom(512), 0.75f);
+    m.frond = foliage(b, "frond", paintFrond(512), 0.5f);
+    m.orange = plain(b, "orange", {0.85f, 0.30f, 0.03f}, 0.5f);
+    m.straw = textured(b, "straw", paintStripes(128, {0.80f, 0.66f, 0.38f}, {0.74f, 0.59f, 0.33f}));
+    m.fur = plain(b, "fur", {0.42f, 0.19f, 0.06f}, 0.9f);
+    m.feather = plain(b, "feather", {0.03f, 0.035f, 0.06f}, 0.6f);
+    b.scene.materials[m.feather].doubleSided = true;
+    m.sheetIron = plain(b, "sheet iron", {0.06f, 0.06f, 0.065f}, 0.5f, 0.5f);
+    b.scene.materials[m.sheetIron].doubleSided = true;
+    m.pierced = foliage(b, "pierced brass", paintStarCutouts(512, {0.80f, 0.60f, 0.30f}), 0.4f, false);
+    b.scene.materials[m.pierced].alphaCutoff = 0.5f;
+    b.scene.materials[m.pierced].metallic = 0.6f;
+    const glm::vec3 wear[] = {{0.17f, 0.22f, 0.40f}, {0.66f, 0.16f, 0.13f}, {0.62f, 0.52f, 0.36f},
+                              {0.86f, 0.80f, 0.68f}, {0.28f, 0.36f, 0.26f}, {0.36f, 0.26f, 0.20f}};
+    for (std::size_t i = 0; i < m.wear.size(); ++i)
+        m.wear[i] = textured(b, "felted cloth", paintClay(256, wear[i]), 0.12f);
+    const glm::vec3 skin[] = {{0.62f, 0.38f, 0.26f}, {0.40f, 0.22f, 0.14f}, {0.52f, 0.30f, 0.20f}};
+    const glm::vec3 hair[] = {{0.09f, 0.05f, 0.03f}, {0.03f, 0.025f, 0.022f}, {0.55f, 0.53f, 0.50f}};
+    const std::uint32_t glow = b.image(paintPaperGlow(128));
+    const glm::vec3 paper[] = {{0.95f, 0.80f, 0.50f}, {0.95f, 0.45f, 0.40f}, {0.50f, 0.85f, 0.85f}};
+    m.leather = plain(b, "leather", {0.06f, 0.035f, 0.02f}, 0.5f);
+    for (std::size_t i = 0; i < 3; ++i) {
+        m.paper[i] = plain(b, "paper", paper[i], 0.9f);
+        Material& lit = b.scene.materials[m.paper[i]];
+        lit.doubleSided = true;
+        lit.emissive = (parts.hour == Hour::Day ? 45.0f : 1.9f) * paper[i] * paper[i];
+        lit.emissiveTexture.image = glow;
+        lit.emissiveTexture.uvTransform = glm::mat2(1.0f, 0.0f, 0.0f, 2.0f);
+        m.skin[i] = plain(b, "skin", skin[i], 0.55f);
+        m.hair[i] = plain(b, "hair", hair[i], 0.6f);
+    }
+}
+
 void makeMaterials(Parts& parts) {
     SceneBuilder& b = parts.builder;
     Materials& m = parts.materials;
@@ -55,10 +111,8 @@ void makeMaterials(Parts& parts) {
     m.bronze = plain(b, "bronze", {0.30f, 0.36f, 0.27f}, 0.4f, 0.5f);
     m.water = plain(b, "water", {0.015f, 0.05f, 0.06f}, 0.08f);
     m.spray = plain(b, "spray", {0.55f, 0.66f, 0.70f}, 0.15f);
-    m.leaf = plain(b, "leaf", {0.09f, 0.17f, 0.045f}, 0.6f);
-    b.scene.materials[m.leaf].doubleSided = b.scene.materials[m.leaf].subsurface = true;
     m.glow = plain(b, "flame", {0.0f, 0.0f, 0.0f}, 1.0f);
-    b.scene.materials[m.glow].emissive = glm::vec3(1.0f, 0.56f, 0.2f) * 12.0f;
+    b.scene.materials[m.glow].emissive = glm::vec3(1.0f, 0.56f, 0.2f) * (parts.hour == Hour::Day ? 200.0f : 12.0f);
     m.coolGlow = plain(b, "cool lamp", {0.0f, 0.0f, 0.0f}, 1.0f);
     b.scene.materials[m.coolGlow].emissive = glm::vec3(0.35f, 0.65f, 1.0f) * 10.0f;
     const glm::vec3 cream(0.86f, 0.80f, 0.68f);
@@ -72,9 +126,11 @@ void makeMaterials(Parts& parts) {
 }  // namespace
 }  // namespace courtyard
 
-Scene makeCourtyard() {
+static Scene makeCourtyard(const char* name, courtyard::Hour hour) {
     using namespace courtyard;
     Parts parts;
+    parts.builder.scene.name = name;
+    parts.hour = hour;
     const auto side = [](const glm::vec3& middle, float turn, float halfLength) {
         return Side{placed(middle, turn), halfLength, static_cast<int>(2.0f * halfLength / kBay + 0.5f)};
     };
@@ -82,17 +138,37 @@ Scene makeCourtyard() {
     parts.sides = {side({0, 0, -kHalfZ}, 0.0f, kHalfX), side({0, 0, kHalfZ}, 2.0f * kQuarter, kHalfX),
                    side({kHalfX, 0, 0}, -kQuarter, kHalfZ), side({-kHalfX, 0, 0}, kQuarter, kHalfZ)};
     makeMaterials(parts);
+    makeLivingMaterials(parts);
     addArchitecture(parts);
     addFurniture(parts);
+    addPlants(parts);
+    addFigures(parts);
+    addWildlife(parts);
     addLights(parts);
     SceneBuilder& b = parts.builder;
     b.camera("overview", {-11.7f, 5.3f, 5.6f}, {1.2f, 1.75f, -1.5f}, 0.93f);
     b.camera("arcade", {-12.2f, 1.75f, -10.7f}, {2.0f, 1.55f, -9.3f}, 0.95f);
     b.camera("fountain", {4.6f, 1.45f, 4.4f}, {-0.6f, 1.75f, -1.2f}, 0.9f);
-    b.scene.skyColour = {0.030f, 0.048f, 0.105f};
-    b.scene.groundColour = {0.022f, 0.020f, 0.022f};
-    b.scene.exposureEv100 = 0.1f;
+    if (hour == Hour::Day) {
+        b.scene.skyColour = {5.0f, 7.2f, 11.4f};
+        b.scene.groundColour = {4.2f, 3.1f, 2.1f};
+        b.scene.exposureEv100 = 4.35f;
+    } else {
+        b.scene.skyColour = {0.030f, 0.048f, 0.105f};
+        b.scene.groundColour = {0.022f, 0.020f, 0.022f};
+        b.scene.exposureEv100 = 0.1f;
+    }
     return std::move(b.scene);
+}
+
+Scene makeCourtyardNight() {
+    return makeCourtyard("courtyard", courtyard::Hour::Night);
+}
+Scene makeCourtyardDay() {
+    return makeCourtyard("courtyard-day", courtyard::Hour::Day);
+}
+Scene makeCourtyardBench() {
+    return makeCourtyard("courtyard-bench", courtyard::Hour::Bench);
 }
 
 }  // namespace gnomon::renderer

@@ -130,64 +130,6 @@ std::uint32_t benchMesh(Parts& parts) {
     return parts.builder.mesh("bench", {seat.take(), legs.take()});
 }
 
-void addPotBody(ShapeBuilder& pot, float radius, float height) {
-    const glm::vec2 profile[] = {{0.62f * radius, 0.0f},           {0.85f * radius, 0.4f * height},
-                                 {1.0f * radius, 0.85f * height},  {1.08f * radius, 0.87f * height},
-                                 {1.08f * radius, height},         {0.94f * radius, height},
-                                 {0.92f * radius, 0.86f * height}, {0.0f, 0.86f * height}};
-    pot.lathe(profile, 14);
-}
-
-// A folded leaf of two triangles at `root`, pointing along `out`.
-void addLeaf(ShapeBuilder& leaves, Random& random, const glm::vec3& root, glm::vec3 out, float length) {
-    const glm::vec3 jitter(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
-    out = glm::normalize(out + 0.6f * jitter);
-    const glm::vec3 twist(random.between(-1, 1), random.between(0.2f, 1.0f), random.between(-1, 1));
-    const glm::vec3 side = glm::normalize(glm::cross(out, twist) + glm::vec3(1e-4f, 0, 0)) * (0.3f * length);
-    const glm::vec3 middle = root + 0.5f * length * out, tip = root + length * out;
-    leaves.quad(root, middle + side, tip, middle - side);
-}
-
-std::uint32_t treeMesh(Parts& parts) {
-    ShapeBuilder pot(parts.materials.clay), trunk(parts.materials.darkWood), leaves(parts.materials.leaf);
-    addPotBody(pot, 0.36f, 0.62f);
-    const glm::vec3 path[] = {{0, 0.5f, 0}, {0.03f, 0.9f, 0.02f}, {-0.02f, 1.3f, 0.0f}, {0.02f, 1.75f, 0.02f}};
-    trunk.tube(path, 0.035f, 7);
-    for (int i = 0; i < 520; ++i) {
-        const glm::vec3 d(parts.random.between(-1, 1), parts.random.between(-1, 1), parts.random.between(-1, 1));
-        const float reach = 0.35f + 0.65f * std::sqrt(parts.random.unit());
-        const glm::vec3 out = glm::normalize(d + glm::vec3(0, 1e-3f, 0));
-        addLeaf(leaves, parts.random, glm::vec3(0, 1.95f, 0) + reach * out * glm::vec3(0.55f, 0.6f, 0.55f), out, 0.13f);
-    }
-    return parts.builder.mesh("orange tree", {pot.take(), trunk.take(), leaves.take()});
-}
-
-std::uint32_t plantMesh(Parts& parts) {
-    ShapeBuilder pot(parts.materials.clay), leaves(parts.materials.leaf);
-    addPotBody(pot, 0.22f, 0.36f);
-    for (int i = 0; i < 90; ++i) {
-        const float angle = 6.2831853f * parts.random.unit(), up = parts.random.between(0.3f, 1.6f);
-        const glm::vec3 out(std::cos(angle), up, std::sin(angle));
-        const glm::vec3 root(0.12f * out.x, 0.33f + 0.2f * parts.random.unit(), 0.12f * out.z);
-        addLeaf(leaves, parts.random, root, out, parts.random.between(0.2f, 0.42f));
-    }
-    return parts.builder.mesh("plant", {pot.take(), leaves.take()});
-}
-
-// Ivy around a lower column, thinning out upwards.
-std::uint32_t ivyMesh(Parts& parts) {
-    ShapeBuilder leaves(parts.materials.leaf);
-    for (int i = 0; i < 380; ++i) {
-        const float u = parts.random.unit(), y = 0.35f + 3.6f * u * u;
-        const float angle = 1.57f + 3.2f * (parts.random.unit() - 0.5f) + 0.8f * std::sin(3.0f * y);
-        const float radius = y < 2.2f ? 0.25f : 0.34f;
-        const glm::vec3 out(std::cos(angle), -0.3f, std::sin(angle));
-        addLeaf(leaves, parts.random, glm::vec3(radius * out.x, y, radius * out.z), out,
-                parts.random.between(0.09f, 0.16f));
-    }
-    return parts.builder.mesh("ivy", {leaves.take()});
-}
-
 // Banners with pointed tails over every other column, hung from a bar at the gallery's edge.
 void addBanners(Parts& parts) {
     std::array<std::uint32_t, 4> meshes{};
@@ -222,20 +164,18 @@ void addStalls(Parts& parts) {
     const std::uint32_t blue = awningMesh(parts, m.cloth[1], 3.0f, 2.3f, 2.75f, 2.3f, true);
     const std::uint32_t lean = awningMesh(parts, m.cloth[2], 2.3f, 1.9f, 3.3f, 2.55f, false);
     const std::uint32_t table = tableMesh(parts), crate = crateMesh(parts), barrel = barrelMesh(parts);
-    const std::uint32_t plant = plantMesh(parts);
     struct Stall {
         std::uint32_t awning;
         glm::vec3 at;
         float turn;
     };
-    for (const Stall& stall : {Stall{red, {5.6f, 0, -7.0f}, -0.15f}, Stall{blue, {-6.2f, 0, -7.2f}, 0.1f}}) {
+    for (const Stall& stall : {Stall{red, kRedStall, kRedStallTurn}, Stall{blue, kBlueStall, kBlueStallTurn}}) {
         const glm::mat4 frame = placed(stall.at, stall.turn);
         b.place(stall.awning, frame);
         b.place(table, frame * placed({0, 0, 1.2f}));
         b.place(crate, frame * placed({1.0f, 0, 0.45f}, 0.2f));
         b.place(crate, frame * placed({-0.9f, 0, 0.4f}, -0.1f));
         b.place(crate, frame * placed({-0.8f, 0.85f, 1.15f}, 0.4f, 0.5f));
-        b.place(plant, frame * placed({0.1f, 0.85f, 1.2f}, 0.0f, 0.55f));
         b.place(barrel, frame * placed({0.75f, 0.85f, 1.2f}, 0.0f, 0.42f));
         b.place(barrel, frame * placed({1.95f, 0, 1.5f}));
     }
@@ -256,27 +196,9 @@ void addStalls(Parts& parts) {
         b.place(barrel, placed(p, p.x));
 }
 
-void addBenchesAndPlants(Parts& parts) {
-    SceneBuilder& b = parts.builder;
-    const std::uint32_t bench = benchMesh(parts), tree = treeMesh(parts), plant = plantMesh(parts),
-                        ivy = ivyMesh(parts);
-    for (const glm::vec3& p : {glm::vec3(4.6f, 0, 0.0f), {-4.6f, 0, 0.0f}, {0.0f, 0, 4.7f}, {0.0f, 0, -4.7f}})
-        b.place(bench, placed(p, std::atan2(-p.x, -p.z)));
-    for (const glm::vec3& p :
-         {glm::vec3(8.6f, 0, 4.4f), {-9.9f, 0, 7.2f}, {8.8f, 0, -3.2f}, {-8.6f, 0, -4.4f}, {3.4f, 0, 6.6f}})
-        b.place(tree, placed(p, 1.3f * p.x));
-    for (std::size_t s = 0; s < parts.sides.size(); ++s) {
-        const Side& side = parts.sides[s];
-        for (int bay = 1; bay < side.bays; ++bay) {
-            const glm::vec3 column(-side.halfLength + kBay * static_cast<float>(bay), 0, 0);
-            const int kind = (bay * 3 + static_cast<int>(s) * 2) % 5;
-            if (kind == 0) b.place(ivy, side.worldFromSide * placed(column));
-            const glm::vec3 pot = column + glm::vec3(0.0f, kArcadeFloor, -0.62f);
-            if (kind <= 1) b.place(plant, side.worldFromSide * placed(pot, 2.0f * column.x));
-            const glm::vec3 above = column + glm::vec3(0.35f, kGallery, -0.4f);
-            if (kind == 2) b.place(plant, side.worldFromSide * placed(above, column.x, 0.8f));
-        }
-    }
+void addBenches(Parts& parts) {
+    const std::uint32_t bench = benchMesh(parts);
+    for (const glm::vec3& p : kBenches) parts.builder.place(bench, placed(p, std::atan2(-p.x, -p.z)));
 }
 
 }  // namespace
@@ -285,7 +207,7 @@ void addFurniture(Parts& parts) {
     addFountain(parts);
     addStalls(parts);
     addBanners(parts);
-    addBenchesAndPlants(parts);
+    addBenches(parts);
 }
 
 }  // namespace gnomon::renderer::courtyard

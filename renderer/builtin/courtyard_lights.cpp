@@ -1,10 +1,9 @@
-// Lanterns, festoon ropes and lamps of the courtyard, each with its light. Every lamp mesh has the light's place as its
-// origin and leaves at least 4 cm of air around it: the glowing part is a bulb or flame next to the light, since one
-// that enclosed the light would shadow everything.
+// The lights of the courtyard, each with its lantern or lamp, for every hour. Sources have plausible sizes: flames 1 to
+// 2 cm, paper shades 12 cm, sun and moon half a degree across.
 
-#include "renderer/builtin/courtyard.h"
+#include "renderer/builtin/courtyard_figure.h"
+#include "renderer/builtin/courtyard_lamps.h"
 
-#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -12,82 +11,38 @@ namespace gnomon::renderer::courtyard {
 namespace {
 
 const glm::vec3 kWarm(1.0f, 0.56f, 0.24f), kAmber(1.0f, 0.46f, 0.15f), kCool(0.45f, 0.68f, 1.0f),
-    kTeal(0.25f, 0.85f, 0.9f);
+    kTeal(0.25f, 0.85f, 0.9f), kRose(1.0f, 0.30f, 0.34f), kGold(1.0f, 0.70f, 0.32f);
 
-void addPoint(Parts& parts, const char* name, const glm::vec3& at, const glm::vec3& colour, float candela, float range,
-              float sourceRadius) {
+constexpr float kBenchReach = 0.66f;  // of the night's ranges: gives 3 shadowed lights per tile, the moon among them
+
+SceneLight& addPoint(Parts& parts, const char* name, const glm::vec3& at, const glm::vec3& colour, float candela,
+                     float range, float sourceRadius) {
     SceneLight light;
     light.name = name;
     light.position = at;
     light.colour = colour;
-    light.intensity = candela;
-    light.rangeMetres = range;
+    light.intensity = parts.hour == Hour::Day ? 2.5f * candela : candela;
+    light.rangeMetres = parts.hour == Hour::Bench ? kBenchReach * range : range;
     light.sourceRadius = sourceRadius;
     parts.builder.scene.lights.push_back(light);
+    return parts.builder.scene.lights.back();
 }
 
-// Four posts, thin rings above and below, a pyramid roof; open to the sides.
-void addCage(ShapeBuilder& cage, float low, float high) {
-    constexpr float kHalf = 0.1f, kBar = 0.006f;
-    for (const float x : {-kHalf, kHalf})
-        for (const float z : {-kHalf, kHalf}) cage.box({x - kBar, low - 0.004f, z - kBar}, {x + kBar, high, z + kBar});
-    for (const float y : {low, high - 0.05f}) {  // none at the light's own height: it would darken the horizon
-        for (const float s : {-kHalf, kHalf}) {
-            cage.box({-kHalf, y, s - 0.8f * kBar}, {kHalf, y + 0.012f, s + 0.8f * kBar});
-            cage.box({s - 0.8f * kBar, y, -kHalf}, {s + 0.8f * kBar, y + 0.012f, kHalf});
-        }
-    }
-    const glm::vec2 roof[] = {{0.0f, high - 0.005f}, {0.17f, high - 0.005f}, {0.17f, high + 0.012f},
-                              {0.06f, high + 0.09f}, {0.03f, high + 0.10f},  {0.0f, high + 0.13f}};
-    cage.setTransform(glm::rotate(glm::mat4(1.0f), 0.785398f, glm::vec3(0, 1, 0)));
-    cage.lathe(roof, 4, true);
-    cage.setTransform(glm::mat4(1.0f));
+void addSpot(Parts& parts, const char* name, const glm::vec3& at, const glm::vec3& direction, const glm::vec3& colour,
+             float candela, float outerAngle, float range, float sourceRadius) {
+    SceneLight& light = addPoint(parts, name, at, colour, candela, range, sourceRadius);
+    light.kind = LightKind::Spot;
+    light.direction = glm::normalize(direction);
+    light.outerConeAngle = outerAngle;
+    light.innerConeAngle = 0.7f * outerAngle;
 }
 
-// Flat links along the y axis, alternately turned.
-void addChain(ShapeBuilder& chain, float low, float high) {
-    const int links = std::max(1, static_cast<int>((high - low) / 0.07f));
-    const float step = (high - low) / static_cast<float>(links);
-    for (int i = 0; i < links; ++i) {
-        chain.setTransform(placed({0, low + step * (static_cast<float>(i) + 0.5f), 0}, (i & 1) != 0 ? 1.5708f : 0.0f));
-        const float h = 0.62f * step, w = 0.012f, t = 0.003f;
-        chain.box({-w, -h, -t}, {-w + 2 * t, h, t});
-        chain.box({w - 2 * t, -h, -t}, {w, h, t});
-        chain.box({-w + t, h - 2 * t, -0.9f * t}, {w - t, h - 0.1f * t, 0.9f * t});
-    }
-    chain.setTransform(glm::mat4(1.0f));
+glm::vec3 inWorld(const Side& side, const glm::vec3& local) {
+    return glm::vec3(side.worldFromSide * glm::vec4(local, 1.0f));
 }
 
-std::uint32_t hangingLantern(Parts& parts, float chainLength) {
-    ShapeBuilder iron(parts.materials.iron), bulb(parts.materials.glow);
-    addCage(iron, -0.16f, 0.14f);
-    addChain(iron, 0.25f, 0.25f + chainLength);
-    bulb.sphere({0, 0.1f, 0}, 0.05f, 8, 12);
-    return parts.builder.mesh("hanging lantern", {iron.take(), bulb.take()});
-}
-
-// A cage around a candle on a post; the post's foot is `height` below the light.
-std::uint32_t standingLantern(Parts& parts, float height, float postRadius) {
-    ShapeBuilder iron(parts.materials.iron), flame(parts.materials.glow), foot(parts.materials.trim);
-    addCage(iron, -0.16f, 0.2f);
-    iron.box({-0.11f, -0.18f, -0.11f}, {0.11f, -0.159f, 0.11f});
-    const float bottom = -height;
-    const glm::vec2 post[] = {{2.2f * postRadius, bottom + 0.3f}, {postRadius, bottom + 0.42f},
-                              {0.8f * postRadius, -0.4f},         {1.6f * postRadius, -0.36f},
-                              {0.8f * postRadius, -0.32f},        {2.0f * postRadius, -0.175f}};
-    iron.lathe(post, 10);
-    const glm::vec2 base[] = {{3.6f * postRadius, bottom - 0.01f},
-                              {3.6f * postRadius, bottom + 0.14f},
-                              {2.6f * postRadius, bottom + 0.18f},
-                              {2.4f * postRadius, bottom + 0.31f},
-                              {0.0f, bottom + 0.31f}};
-    foot.lathe(base, 8, true);
-    const glm::vec2 candle[] = {{0.034f, -0.162f}, {0.034f, -0.09f}, {0.022f, -0.07f}, {0.0f, -0.045f}};
-    flame.lathe(candle, 10);
-    return parts.builder.mesh("standing lantern", {iron.take(), flame.take(), foot.take()});
-}
-
-// Under the middle of chosen bays of the lower arcade, hung from the beams.
+// In the middle of chosen bays of the lower arcade, hung from the beams. The first one is a turning drum of pierced
+// brass, whose stars wander over walls and floor.
 void addArcadeLanterns(Parts& parts) {
     const float y = 2.72f, chain = 3.99f - y - 0.25f;
     const std::uint32_t mesh = hangingLantern(parts, chain);
@@ -95,16 +50,29 @@ void addArcadeLanterns(Parts& parts) {
         std::size_t side;
         int bay;
         glm::vec3 colour;
-        float candela;
     };
-    const Place places[] = {{0, 1, kWarm, 62},  {0, 4, kWarm, 62}, {0, 8, kAmber, 62}, {2, 1, kWarm, 62},
-                            {2, 4, kAmber, 62}, {1, 1, kWarm, 62}, {1, 6, kAmber, 62}, {3, 3, kWarm, 62}};
+    const Place places[] = {{0, 1, kGold},  {0, 4, kWarm}, {0, 8, kAmber}, {2, 1, kWarm},
+                            {2, 4, kAmber}, {1, 1, kWarm}, {1, 6, kAmber}, {3, 3, kWarm}};
+    bool first = true;
     for (const Place& p : places) {
         const Side& side = parts.sides[p.side];
         const glm::vec3 local(-side.halfLength + kBay * (static_cast<float>(p.bay) + 0.5f), y, -1.35f);
-        parts.builder.place(mesh, side.worldFromSide * placed(local));
-        addPoint(parts, "arcade lantern", glm::vec3(side.worldFromSide * glm::vec4(local, 1.0f)), p.colour, p.candela,
-                 12.0f, 0.012f);
+        const glm::vec3 at = inWorld(side, local);
+        if (!first) {
+            parts.builder.place(mesh, side.worldFromSide * placed(local));
+            addPoint(parts, "arcade lantern", at, p.colour, 62.0f, 8.5f, 0.015f);
+            continue;
+        }
+        first = false;
+        SceneBuilder& b = parts.builder;
+        b.place(drumChain(parts, chain - 0.03f), placed(at));
+        const auto turn = [](float share) -> glm::quat {
+            return glm::angleAxis(6.28318530718f * share, glm::vec3(0, 1, 0));
+        };
+        const std::uint32_t node = addNode(b.scene, "pierced drum", kNone, at);
+        placeOn(b, node, piercedDrum(parts));
+        animateTurn(b.scene, node, 24, turn);
+        addPoint(parts, "pierced drum", at, p.colour, 130.0f, 8.5f, 0.004f);
     }
 }
 
@@ -120,107 +88,141 @@ void addGalleryLanterns(Parts& parts) {
         const Side& side = parts.sides[p.side];
         const glm::vec3 local(p.along, kGallery + height, -0.75f);
         parts.builder.place(mesh, side.worldFromSide * placed(local));
-        addPoint(parts, "gallery lantern", glm::vec3(side.worldFromSide * glm::vec4(local, 1.0f)), kAmber, 140, 14.0f,
-                 0.006f);
+        addPoint(parts, "gallery lantern", inWorld(side, local), kAmber, 140.0f, 12.0f, 0.01f);
     }
 }
 
 void addPostLanterns(Parts& parts) {
     const std::uint32_t mesh = standingLantern(parts, 2.7f, 0.05f);
-    for (const glm::vec2& p : {glm::vec2(6.5f, 4.2f), {-6.5f, 4.2f}, {6.5f, -4.2f}, {-6.5f, -4.2f}}) {
+    for (const glm::vec2& p : {glm::vec2(6.1f, 2.5f), {-8.9f, 5.0f}, {6.5f, -6.4f}, {-6.9f, -4.2f}}) {
         const glm::vec3 at(p.x, 2.7f, p.y);
         parts.builder.place(mesh, placed(at));
-        addPoint(parts, "post lantern", at, kWarm, 26, 9.0f, 0.012f);
+        addPoint(parts, "post lantern", at, kWarm, 46.0f, 7.5f, 0.015f);
     }
 }
 
-// Ropes between the galleries with small bulbs, and hanging banners; `lanterns` are places along z.
-void addFestoon(Parts& parts, float x, std::initializer_list<float> lanterns, std::initializer_list<float> banners) {
-    const float end = kHalfZ - 0.08f;
-    const auto ropeAt = [=](float z) { return glm::vec3(x, 5.25f + 0.9f * (z / end) * (z / end), z); };
-    ShapeBuilder rope(parts.materials.rope), bulbs(parts.materials.glow);
-    std::vector<glm::vec3> path;
-    for (int i = 0; i <= 36; ++i) path.push_back(ropeAt(end * (static_cast<float>(i) / 18.0f - 1.0f)));
-    rope.tube(path, 0.012f, 5);
-    for (int i = 1; i < 18; ++i)
-        bulbs.sphere(ropeAt(end * (static_cast<float>(i) / 9.0f - 1.0f)) - glm::vec3(0, 0.045f, 0), 0.026f, 4, 6);
-    parts.builder.place("festoon rope", rope);
-    parts.builder.place("festoon bulbs", bulbs);
-    const float chain = 0.3f;
-    const std::uint32_t lantern = hangingLantern(parts, chain);
-    for (const float z : lanterns) {
-        const glm::vec3 at = ropeAt(z) - glm::vec3(0, 0.25f + chain, 0);
-        parts.builder.place(lantern, placed(at, 0.3f));
-        addPoint(parts, "festoon lantern", at, kWarm, 45, 11.0f, 0.012f);
-    }
-    std::size_t colour = static_cast<std::size_t>(x + 20.0f);
-    for (const float z : banners) {
-        ShapeBuilder cloth(parts.materials.cloth[colour++ % 4]);
-        cloth.sheet(
-            [&](float u, float v) {
-                const glm::vec3 top = ropeAt(z + 1.0f * (u - 0.5f)) - glm::vec3(0, 0.012f, 0);
-                return top + glm::vec3(0.12f * v * std::sin(6.0f * u + 2.5f * v + z), -1.9f * v, 0);
-            },
-            16, 20, 1.0f, 1.9f);
-        parts.builder.place("rope banner", cloth);
+// Beside the doors of both storeys: hooded lamps that throw a wide cone down the wall.
+void addWallLamps(Parts& parts) {
+    const std::uint32_t mesh = wallLamp(parts);
+    const glm::vec3 colours[] = {kWarm, kAmber, kGold, kWarm, kRose};
+    std::size_t next = 0;
+    for (const Side& side : parts.sides) {
+        for (int bay = 1; bay < side.bays - 1; bay += 2) {
+            for (const float floor : {kArcadeFloor, kGallery}) {
+                const float x = -side.halfLength + kBay * (static_cast<float>(bay) + 0.5f) + 1.15f;
+                const glm::vec3 local(x, floor + 2.05f, -kDepth + 0.3f);
+                const glm::vec3 down = inWorld(side, local + glm::vec3(0, -1.0f, 0.28f)) - inWorld(side, local);
+                parts.builder.place(mesh, side.worldFromSide * placed(local));
+                const float candela = floor > 1.0f ? 44.0f : 24.0f;
+                addSpot(parts, "wall lamp", inWorld(side, local), down, colours[next++ % 5], candela, 1.05f, 4.2f,
+                        0.02f);
+            }
+        }
     }
 }
 
-// A lamp under the eaves that throws a cone towards `target`.
-void addSpot(Parts& parts, std::uint32_t lamp, const glm::vec3& at, const glm::vec3& target, const glm::vec3& colour,
-             float candela, float outerAngle, float range = 14.0f, float sourceRadius = 0.02f) {
-    const glm::mat4 frame = lookingAt(at, target);  // looks down its -z
-    parts.builder.place(lamp, frame);
-    SceneLight light;
-    light.name = "spot";
-    light.kind = LightKind::Spot;
-    light.position = at;
-    light.direction = glm::normalize(target - at);
-    light.colour = colour;
-    light.intensity = candela;
-    light.rangeMetres = range;
-    light.outerConeAngle = outerAngle;
-    light.innerConeAngle = 0.7f * outerAngle;
-    light.sourceRadius = sourceRadius;
-    parts.builder.scene.lights.push_back(light);
+// A rope between the galleries with small bulbs; `at` and `hang` put lanterns and banners along z.
+class Festoon {
+public:
+    Festoon(Parts& parts, float x) : parts_(parts), x_(x) {
+        ShapeBuilder rope(parts.materials.rope), bulbs(parts.materials.glow);
+        std::vector<glm::vec3> path;
+        for (int i = 0; i <= 36; ++i) path.push_back(ropeAt(kEnd * (static_cast<float>(i) / 18.0f - 1.0f)));
+        rope.tube(path, 0.012f, 5);
+        for (int i = 1; i < 18; ++i)
+            bulbs.sphere(ropeAt(kEnd * (static_cast<float>(i) / 9.0f - 1.0f)) - glm::vec3(0, 0.045f, 0), 0.026f, 4, 6);
+        parts.builder.place("festoon rope", rope);
+        parts.builder.place("festoon bulbs", bulbs);
+    }
+    void lanterns(std::uint32_t mesh, float drop, std::initializer_list<float> along, const glm::vec3& colour,
+                  float candela, float range, float sourceRadius) {
+        for (const float z : along) {
+            const glm::vec3 at = ropeAt(z) - glm::vec3(0, drop, 0);
+            parts_.builder.place(mesh, placed(at, 0.3f + z));
+            addPoint(parts_, "festoon lantern", at, colour, candela, range, sourceRadius);
+        }
+    }
+    void banners(std::initializer_list<float> along) {
+        auto colour = static_cast<std::size_t>(x_ + 20.0f);
+        for (const float z : along) {
+            ShapeBuilder cloth(parts_.materials.cloth[colour++ % 4]);
+            cloth.sheet(
+                [&](float u, float v) {
+                    const glm::vec3 top = ropeAt(z + 1.0f * (u - 0.5f)) - glm::vec3(0, 0.012f, 0);
+                    return top + glm::vec3(0.12f * v * std::sin(6.0f * u + 2.5f * v + z), -1.9f * v, 0);
+                },
+                16, 20, 1.0f, 1.9f);
+            parts_.builder.place("rope banner", cloth);
+        }
+    }
+
+private:
+    static constexpr float kEnd = kHalfZ - 0.08f;
+    [[nodiscard]] glm::vec3 ropeAt(float z) const { return {x_, 5.25f + 0.9f * (z / kEnd) * (z / kEnd), z}; }
+    Parts& parts_;
+    float x_;
+};
+
+void addFestoons(Parts& parts) {
+    const Materials& m = parts.materials;
+    const float chain = 0.3f, cord = 0.35f, drop = 0.27f + cord;
+    const std::uint32_t iron = hangingLantern(parts, chain);
+    const std::uint32_t gold = paperLantern(parts, m.paper[0], cord), rose = paperLantern(parts, m.paper[1], cord),
+                        teal = paperLantern(parts, m.paper[2], cord);
+    Festoon west(parts, -5.2f), middle(parts, 2.6f), east(parts, 9.1f);
+    west.lanterns(iron, 0.25f + chain, {-1.4f}, kWarm, 45.0f, 8.0f, 0.015f);
+    west.lanterns(rose, drop, {1.6f}, kRose, 26.0f, 6.0f, 0.12f);
+    west.lanterns(gold, drop, {5.4f}, kGold, 34.0f, 6.5f, 0.12f);
+    west.banners({-6.0f, -3.9f});
+    middle.lanterns(iron, 0.25f + chain, {-4.6f}, kWarm, 45.0f, 8.0f, 0.015f);
+    middle.lanterns(gold, drop, {-1.9f, 2.4f}, kGold, 34.0f, 6.5f, 0.12f);
+    middle.lanterns(teal, drop, {0.2f}, kTeal, 18.0f, 5.5f, 0.12f);
+    middle.lanterns(rose, drop, {6.0f}, kRose, 26.0f, 6.0f, 0.12f);
+    middle.banners({-6.6f});
+    east.lanterns(gold, drop, {0.0f}, kGold, 34.0f, 6.5f, 0.12f);
+    east.lanterns(teal, drop, {-7.0f}, kTeal, 18.0f, 5.5f, 0.12f);
+    east.banners({-2.0f, 2.0f, 6.9f});
 }
 
 void addSpots(Parts& parts) {
-    ShapeBuilder body(parts.materials.iron), lens(parts.materials.coolGlow);
-    const glm::mat4 backwards = glm::rotate(glm::mat4(1.0f), 1.5707963f, glm::vec3(1, 0, 0));  // y becomes +z: behind
-    body.setTransform(backwards);
-    const glm::vec2 can[] = {{0.09f, 0.05f}, {0.105f, 0.05f}, {0.11f, 0.25f}, {0.06f, 0.30f}, {0.0f, 0.31f}};
-    body.lathe(can, 12);
-    lens.setTransform(backwards);
-    const glm::vec2 front[] = {{0.0f, 0.055f}, {0.1f, 0.055f}};
-    lens.lathe(front, 12);
-    body.setTransform(glm::mat4(1.0f));
-    body.box({-0.015f, 0.08f, 0.13f}, {0.015f, 0.5f, 0.16f});
-    const std::uint32_t lamp = parts.builder.mesh("eaves lamp", {body.take(), lens.take()});
-    addSpot(parts, lamp, {-6.5f, 6.95f, -8.72f}, {0.2f, 0.8f, 0.2f}, kCool, 900, 0.42f);
-    addSpot(parts, lamp, {7.15f, 6.95f, 8.72f}, {-0.2f, 0.8f, -0.2f}, kCool, 800, 0.45f);
-    // From the gallery floors through the balusters, whose shadows run across the court.
-    addSpot(parts, lamp, {4.55f, 5.35f, -10.0f}, {1.5f, 0.0f, 2.5f}, kWarm, 1500, 0.55f, 20.0f, 0.004f);
-    addSpot(parts, lamp, {13.9f, 5.35f, 2.6f}, {2.0f, 0.0f, 3.0f}, kAmber, 1300, 0.55f, 20.0f, 0.004f);
-    addSpot(parts, lamp, {-7.15f, 5.35f, 10.0f}, {-3.6f, 0.0f, 0.5f}, kCool, 1500, 0.55f, 20.0f, 0.004f);
+    const std::uint32_t lamp = eavesLamp(parts);
+    struct Place {
+        glm::vec3 at, target, colour;
+        float candela, outerAngle, range, sourceRadius;
+    };
+    // The last three shine from the gallery floors through the balusters, whose shadows run across the court.
+    for (const Place& p : {Place{{-6.5f, 6.95f, -8.72f}, {0.2f, 0.8f, 0.2f}, kCool, 900, 0.42f, 14, 0.02f},
+                           {{7.15f, 6.95f, 8.72f}, {-0.2f, 0.8f, -0.2f}, kCool, 800, 0.45f, 14, 0.02f},
+                           {{4.55f, 5.35f, -10.0f}, {1.5f, 0.0f, 2.5f}, kWarm, 1500, 0.55f, 20, 0.01f},
+                           {{13.9f, 5.35f, 2.6f}, {2.0f, 0.0f, 3.0f}, kAmber, 1300, 0.55f, 20, 0.01f},
+                           {{-7.15f, 5.35f, 10.0f}, {-3.6f, 0.0f, 0.5f}, kCool, 1500, 0.55f, 20, 0.01f}}) {
+        parts.builder.place(lamp, lookingAt(p.at, p.target));
+        addSpot(parts, "spot", p.at, p.target - p.at, p.colour, p.candela, p.outerAngle, p.range, p.sourceRadius);
+    }
 }
 
-// A lamp that floats in the basin, and the moon.
-void addBasinLampAndMoon(Parts& parts) {
+// A lamp that floats in the basin, one under each stall's awning, and what stands in the sky.
+void addOtherLights(Parts& parts) {
     ShapeBuilder lamp(parts.materials.coolGlow);
     lamp.sphere({0, -0.16f, 0}, 0.08f, 8, 12);
     const glm::vec3 at(1.15f, 1.02f, 0.75f);
     parts.builder.place("basin lamp", lamp, placed(at));
-    addPoint(parts, "basin lamp", at, kTeal, 7, 6.0f, 0.04f);
-    SceneLight moon;
-    moon.name = "moon";
-    moon.kind = LightKind::Directional;
-    moon.direction = glm::normalize(glm::vec3(0.45f, -0.8f, -0.35f));
-    moon.colour = {0.55f, 0.70f, 1.0f};
-    moon.intensity = 0.22f;  // lux
-    moon.sourceRadius = 0.0046f;
-    moon.casts = false;
-    parts.builder.scene.lights.push_back(moon);
+    addPoint(parts, "basin lamp", at, kTeal, 7.0f, 5.0f, 0.04f);
+    const std::uint32_t lantern = hangingLantern(parts, 0.08f);
+    for (const glm::mat4& stall : {placed(kRedStall, kRedStallTurn), placed(kBlueStall, kBlueStallTurn)}) {
+        const glm::mat4 place = stall * placed({0.35f, 1.95f, 1.35f});
+        parts.builder.place(lantern, place);
+        addPoint(parts, "stall lantern", glm::vec3(place[3]), kGold, 16.0f, 5.0f, 0.015f);
+    }
+    const bool day = parts.hour == Hour::Day;
+    SceneLight sky;
+    sky.name = day ? "sun" : "moon";
+    sky.kind = LightKind::Directional;
+    sky.direction = glm::normalize(day ? glm::vec3(-0.62f, -0.65f, -0.46f) : glm::vec3(0.45f, -0.8f, -0.35f));
+    sky.colour = day ? glm::vec3(1.0f, 0.77f, 0.50f) : glm::vec3(0.55f, 0.70f, 1.0f);
+    sky.intensity = day ? 420.0f : 0.55f;  // lux
+    sky.sourceRadius = 0.00465f;
+    parts.builder.scene.lights.push_back(sky);
 }
 
 }  // namespace
@@ -229,11 +231,10 @@ void addLights(Parts& parts) {
     addArcadeLanterns(parts);
     addGalleryLanterns(parts);
     addPostLanterns(parts);
-    addFestoon(parts, -5.2f, {-1.4f}, {-6.0f, -3.9f});
-    addFestoon(parts, 2.6f, {2.4f, -4.6f}, {-2.4f, 5.2f});
-    addFestoon(parts, 9.1f, {0.0f}, {-4.0f, -1.9f, 3.0f});
+    addWallLamps(parts);
+    addFestoons(parts);
     addSpots(parts);
-    addBasinLampAndMoon(parts);
+    addOtherLights(parts);
 }
 
 }  // namespace gnomon::renderer::courtyard

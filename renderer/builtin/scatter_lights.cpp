@@ -8,12 +8,15 @@
 // Range. The mean number of lights in range of a random surface point shall be 4.5 whatever the scene and the count, as
 // in a lit game level. Instead of a formula for an ideal floor the range is found by bisection over 512 random surface
 // points, spots counting by the share of the sphere they cover. Each light then varies it by up to a quarter.
+// With a TileDensity the range is found by bisection over tiles of the picture instead, every light's variation
+// included: then 64 lights and 1024 cost the same per tile.
 //
 // Intensity. About 8 lux at a third of the range, times 0.6 to 1.6, so that a picture's exposure depends neither on the
 // scene's unit nor on the count. Source radius: 0.8 to 4 % of the free way that was used, 2 to 10 cm in a room.
 
 #include "renderer/builtin/builtin.h"
 #include "renderer/builtin/random.h"
+#include "renderer/builtin/tile_samples.h"
 #include "renderer/builtin/triangle_grid.h"
 
 #include <algorithm>
@@ -145,6 +148,27 @@ void finish(std::vector<SceneLight>& lights, float range, Random& random) {
     }
 }
 
+// The range at which so many shadowed lights reach a tile in the mean, `random` as finish() will get it.
+float rangeForTiles(Scene& scene, const std::vector<SceneLight>& lights, const TileSamples& tiles, float wanted,
+                    float radius, const Random& random) {
+    const auto meanAt = [&](float range) {
+        std::vector<SceneLight> tried = lights;
+        Random same = random;
+        finish(tried, range, same);
+        return tiles.meanShadowed(scene.lights) + tiles.meanShadowed(tried);
+    };
+    float low = 1e-4f * radius, high = 2.0f * radius;
+    for (int i = 0; i < 16; ++i) {
+        const float middle = std::sqrt(low * high);
+        (meanAt(middle) < wanted ? low : high) = middle;
+    }
+    const float reached = meanAt(high);
+    if (std::abs(reached - wanted) > 0.1f * wanted)
+        scene.notes.push_back("The scattered lights give about " + std::to_string(reached) +
+                              " shadowed lights per tile in this picture: no range gives what was asked for.");
+    return high;
+}
+
 // Without geometry the lights fill a box of two metres around the origin.
 std::vector<SceneLight> lightsInEmptySpace(std::uint32_t count, Random& random) {
     std::vector<SceneLight> lights;
@@ -157,8 +181,10 @@ std::vector<SceneLight> lightsInEmptySpace(std::uint32_t count, Random& random) 
 
 }  // namespace
 
-void scatterLights(Scene& scene, std::uint32_t count, std::uint64_t seed) {
+void scatterLights(Scene& scene, std::uint32_t count, std::uint64_t seed, const TileDensity* density) {
     if (count == 0) return;
+    if (density != nullptr)
+        std::erase_if(scene.lights, [](const SceneLight& light) { return light.kind != LightKind::Directional; });
     Random random(seed);
     const TriangleGrid grid(scene);
     std::vector<SceneLight> lights;
@@ -180,7 +206,10 @@ void scatterLights(Scene& scene, std::uint32_t count, std::uint64_t seed) {
                                   " scattered lights found a free place.");
         std::vector<glm::vec3> points;
         for (int i = 0; i < kSurfacePoints; ++i) points.push_back(all.point(random));
-        range = commonRange(lights, points, grid.bounds().radius());
+        const float radius = grid.bounds().radius();
+        range = commonRange(lights, points, radius);
+        const TileSamples tiles = density != nullptr ? TileSamples(grid, *density) : TileSamples();
+        if (!tiles.empty()) range = rangeForTiles(scene, lights, tiles, density->shadowedPerTile, radius, random);
     }
     finish(lights, range, random);
     scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());

@@ -5,7 +5,9 @@
 
 namespace gnomon::renderer {
 
-Scene makeCourtyard();
+Scene makeCourtyardNight();
+Scene makeCourtyardDay();
+Scene makeCourtyardBench();
 
 Scene makeEmptyPlane();
 Scene makeSphereOnPlane();

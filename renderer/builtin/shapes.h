@@ -37,6 +37,22 @@ public:
     void sheet(const std::function<glm::vec3(float, float)>& position, int columns, int rows, float widthMetres,
                float heightMetres);
 
+    // A closed tube over rings of elliptic section, capped at both ends. At angle a a ring's point is
+    // centre + across * cos a + forward * sin a; rings run towards cross(across, forward). Folds widen and narrow it
+    // by that share, kLoftFolds times around.
+    struct Ring {
+        glm::vec3 centre, across, forward;
+        float folds = 0.0f;
+    };
+    static constexpr int kLoftFolds = 9;
+    void loft(std::span<const Ring> rings, int sides);
+    // A round bar whose radius changes along its path.
+    void branch(std::span<const glm::vec3> path, std::span<const float> radii, int sides);
+
+    // A flat card whose texture is the whole image: from the middle of its lower edge along `up`, `side` to the right.
+    // Its normals are the face's, bent towards `outward`: a crown of cards is then shaded as one body.
+    void card(const glm::vec3& root, const glm::vec3& up, const glm::vec3& side, const glm::vec3& outward);
+
     // Wall of `thickness` around z = 0 with a round-arched opening whose springing line is the wall's lower edge.
     // No top, and no sides: walls stand in rows. `relief` raises a ring of `ringWidth` around the arch on both faces.
     struct Arch {
@@ -56,6 +72,10 @@ public:
     void mitred(const Mitred& side);
 
     [[nodiscard]] Primitive take();
+
+    [[nodiscard]] std::size_t vertexCount() const { return primitive_.positions.size(); }
+    // Object-space places of the vertices added so far.
+    [[nodiscard]] std::span<const glm::vec3> positions() const { return primitive_.positions; }
 
 private:
     std::uint32_t vertex(const glm::vec3& position, const glm::vec3& normal, const glm::vec2& uv);

@@ -119,7 +119,8 @@ void TriangleGrid::castInCell(std::size_t cell, const glm::vec3& origin, const g
         const glm::vec3 q = glm::cross(s, e1);
         const float v = glm::dot(direction, q), distance = glm::dot(e2, q);
         if (u < 0.0f || v < 0.0f || u + v > 1.0f || distance <= 0.0f) continue;
-        if (!nearest || distance < nearest->distance) nearest = Hit{distance, determinant < 0.0f && !t.doubleSided};
+        if (!nearest || distance < nearest->distance)
+            nearest = Hit{distance, members_[m], determinant < 0.0f && !t.doubleSided};
     }
 }
 

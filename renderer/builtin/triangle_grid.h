@@ -17,7 +17,8 @@ public:
     };
     struct Hit {
         float distance;
-        bool backFace;  // the ray met the back of a single-sided triangle: it came from inside a solid
+        std::uint32_t triangle;  // into triangles()
+        bool backFace;           // the ray met the back of a single-sided triangle: it came from inside a solid
     };
 
     // The scene at rest. Triangles without area are left out. Mirroring instances keep their outward winding.

@@ -6,9 +6,9 @@
 
 #include "gnomon/tiled_shadows.h"
 #include "renderer/gbuffer/gbuffer.h"
-#include "renderer/gpu/pipeline.h"
 #include "renderer/gpu/resources.h"
 #include "renderer/gpu/timer.h"
+#include "renderer/lighting/lighting_pipelines.h"
 #include "renderer/scene/scene.h"
 
 namespace gnomon::renderer {
@@ -41,14 +41,11 @@ private:
               bool shadowmaps);
 
     const Device& device_;
+    LightingPipelines pipelines_;
     GpuImage picture_;
     Buffer hostLights_, sceneConstants_;
-    SetLayout ownLayout_, emptyLayout_;
     DescriptorPool pool_;
     VkDescriptorSet ownSet_ = VK_NULL_HANDLE;
-    PipelineLayout mainLayout_;      // without the set of the shadowmaps
-    PipelineLayout evaluateLayout_;  // with it
-    Pipeline deferred_, evaluate_, inline_, unshadowed_;
     bool pictureReady_ = false;
 };
 

@@ -151,7 +151,7 @@ void applyPreset(const std::string& preset, const CLI::App& command, Settings& s
     const auto given = [&](const char* option) { return command.get_option(option)->count() != 0; };
     if (!given("scene")) settings.scene = defaultScene();
     if (!given("--size")) settings.size = "3840x2160";
-    if (!given("--filter")) settings.filter = "pcf";
+    if (!given("--filter")) settings.filter = "pcss";
     if (!given("--variants")) variants = variantsOf(preset);
 }
 

@@ -14,6 +14,10 @@ FilterSamples samplesOf(const renderer::RendererDesc& desc) {
     FilterSamples samples;
     if (desc.filter == Filter::Hard) samples.fetches = 1;
     if (desc.filter == Filter::Pcf) samples.gathers = (desc.pcfRadius + 1.0) * (desc.pcfRadius + 1.0);
+    if (desc.filter == Filter::Pcss) {
+        samples.fetches = desc.pcss.searchTaps;
+        samples.gathersIfMixed = desc.pcss.filterTaps;
+    }
     return samples;
 }
 
@@ -27,6 +31,7 @@ FrameCounts countsOf(const Session& session, const renderer::FrameReport& report
     counts.earlyCastingEntries = s.earlyCastingEntries;
     counts.finalEntries = s.finalEntries;
     counts.slots = s.finalSlotEntries;
+    counts.slotBytes = 8.0 * session.rendererDesc().visibilityBits;  // 64 pixels
     return counts;
 }
 

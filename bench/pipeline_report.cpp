@@ -41,6 +41,7 @@ constexpr Provider kProviders[] = {
     {"hard", Filter::Hard, 1},
     {"pcf, radius 1", Filter::Pcf, 1},
     {"pcf, radius 3", Filter::Pcf, 3},
+    {"pcss", Filter::Pcss, 1},
 };
 
 // A figure of a pipeline, under the names that drivers give it.
@@ -161,10 +162,17 @@ std::unique_ptr<Context> makeContext(const Device& device, const Provider& provi
 std::vector<Row> rowsOf(const Device& device, const Provider& provider, std::uint32_t lanes) {
     capture.captured.clear();
     const std::unique_ptr<Context> context = makeContext(device, provider, lanes);
-    const renderer::LightingPipelines lighting(device, *context, true);
+    const renderer::LightingPipelines lighting(device, *context, {});
+    const std::size_t withMasks = capture.captured.size();
+    // The reference renderer's inline pipeline as it is measured: without the way out for tiles that got no list space.
+    const renderer::LightingPipelines lean(device, *context, {.walksMasks = false});
+    const Statistics leanInline = capture.captured[withMasks + 2];
+    capture.captured.resize(withMasks);
+    capture.captured.push_back(leanInline);
     std::vector<std::string> names;
     for (std::uint32_t id = 0; id < kPassCount; ++id) names.emplace_back(passOf(static_cast<PassId>(id)).name);
-    for (const char* name : {"lighting_deferred", "lighting_evaluate", "lighting_inline", "lighting_unshadowed"})
+    for (const char* name : {"lighting_deferred", "lighting_evaluate", "lighting_inline", "lighting_unshadowed",
+                             "lighting_inline, lists alone"})
         names.emplace_back(name);
     if (names.size() != capture.captured.size())
         throw GpuError(
@@ -175,7 +183,7 @@ std::vector<Row> rowsOf(const Device& device, const Provider& provider, std::uin
 }
 
 bool evaluatesShadows(const std::string& pipeline) {
-    return pipeline == "generate_shadows" || pipeline == "lighting_evaluate" || pipeline == "lighting_inline";
+    return pipeline == "generate_shadows" || pipeline == "lighting_evaluate" || pipeline.starts_with("lighting_inline");
 }
 
 // Every pipeline once: those that evaluate shadows for each provider, by pipeline, in the order of execution.

@@ -17,6 +17,7 @@
 #endif
 
 layout(constant_id = 16) const uint kQuantise = 1;
+layout(constant_id = 17) const uint kWalksMasks = 1;  // inline: tiles without list space are shaded too
 
 vec3 eyeDirection(Receiver receiver) {
     return isOrthographic() ? -frame.axisZWs.xyz : normalize(frame.eyeWs.xyz - receiver.positionWs);
@@ -76,6 +77,7 @@ vec3 shadeLights(Surface surface, Receiver receiver, uvec2 pixel) {
     uint tile = tileIndexOf(pixel / kShadowTileSizePx);
     uint slotId = tileLightSlotIds[tile];
     if (slotId == kNoListSpace) {
+        if (kWalksMasks == 0u) return sum;
         LightWalk walk = beginMaskWalk(pixel);
         uint lightIndex;
         while (nextMaskLight(walk, lightIndex)) addLight(lights[lightIndex], surface, receiver, sum);

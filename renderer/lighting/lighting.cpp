@@ -32,8 +32,8 @@ std::span<const std::byte> bytesOf(const std::vector<T>& values) {
 }  // namespace
 
 Lighting::Lighting(const Device& device, const Context& context, const Scene& scene, const GBuffer& gbuffer,
-                   bool quantiseInline)
-    : device_(device), pipelines_(device, context, quantiseInline) {
+                   const InlineVariant& inlineVariant)
+    : device_(device), pipelines_(device, context, inlineVariant) {
     const VkExtent2D extent = gbuffer.extent();
     picture_ = GpuImage(
         device, {.name = "picture",

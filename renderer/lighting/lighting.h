@@ -21,9 +21,9 @@ enum class LightingVariant : std::uint8_t {
 /// Writes a linear R16G16B16A16_SFLOAT picture of the G-buffer's extent. Not thread safe.
 class Lighting {
 public:
-    /// Uploads the scene's light data. `quantiseInline`: inline visibility has the 8 bits of a slot.
+    /// Uploads the scene's light data.
     Lighting(const Device& device, const Context& context, const Scene& scene, const GBuffer& gbuffer,
-             bool quantiseInline);
+             const InlineVariant& inlineVariant);
 
     /// After View::recordGenerateShadows(): one dispatch over all tiles, and an indirect one for tiles to be evaluated.
     void recordDeferred(VkCommandBuffer commands, const View& view, GpuTimer* timer);

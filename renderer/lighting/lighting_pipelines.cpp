@@ -20,7 +20,7 @@ constexpr std::uint32_t kInlineSpirv[] = {
 
 }  // namespace
 
-LightingPipelines::LightingPipelines(const Device& device, const Context& context, bool quantiseInline)
+LightingPipelines::LightingPipelines(const Device& device, const Context& context, const InlineVariant& inlineVariant)
     : ownSet(makeSetLayout(device, kLightingSetTypes, VK_SHADER_STAGE_COMPUTE_BIT)),
       emptySet(makeSetLayout(device, {}, VK_SHADER_STAGE_COMPUTE_BIT)) {
     const VkDescriptorSetLayout main[] = {context.listsSetLayout(), context.receiversSetLayout(), emptySet, ownSet};
@@ -28,9 +28,10 @@ LightingPipelines::LightingPipelines(const Device& device, const Context& contex
                                                     context.shadowmapsSetLayout(), ownSet};
     mainLayout = makePipelineLayout(device, main);
     evaluateLayout = makePipelineLayout(device, withShadowmaps);
-    std::vector<std::uint32_t> constants(gpu::kSpecFirstFree + 1, 0u);
+    std::vector<std::uint32_t> constants(gpu::kSpecFirstFree + 2, 0u);
     std::ranges::copy(context.specializationValues(), constants.begin());
-    constants[gpu::kSpecFirstFree] = quantiseInline ? 1u : 0u;
+    constants[gpu::kSpecFirstFree] = inlineVariant.quantises ? 1u : 0u;
+    constants[gpu::kSpecFirstFree + 1] = inlineVariant.walksMasks ? 1u : 0u;
     // A device with one size need not, and perhaps cannot, be asked for it.
     const bool oneSize = device.info().minSubgroupSize == device.info().maxSubgroupSize;
     const std::uint32_t lanes = oneSize ? 0 : context.subgroupSize();

@@ -13,9 +13,15 @@ inline constexpr VkDescriptorType kLightingSetTypes[] = {
     VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
     VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER};
 
+/// How the inline pipeline is compiled.
+struct InlineVariant {
+    bool quantises = true;   ///< visibility has the bits of a slot
+    bool walksMasks = true;  ///< tiles without list space are shaded too; costs registers
+};
+
 struct LightingPipelines {
-    /// `quantiseInline`: inline visibility has the 8 bits of a slot. Throws GpuError.
-    LightingPipelines(const Device& device, const Context& context, bool quantiseInline);
+    /// Throws GpuError.
+    LightingPipelines(const Device& device, const Context& context, const InlineVariant& inlineVariant);
 
     SetLayout ownSet, emptySet;
     PipelineLayout mainLayout;      // without the set of the shadowmaps

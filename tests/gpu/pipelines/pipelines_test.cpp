@@ -153,8 +153,8 @@ TEST_F(PipelinesTest, LightingOfTheRenderer) {
                 std::unique_ptr<Context> context;
                 const Result result = Context::create(variant, context);
                 ASSERT_TRUE(result) << info.name << ": " << result.message();
-                for (const bool quantise : {false, true}) {
-                    const LightingPipelines made(device, *context, quantise);
+                for (const bool on : {false, true}) {
+                    const LightingPipelines made(device, *context, {.quantises = on, .walksMasks = on});
                     for (const Pipeline* pipeline : {&made.deferred, &made.evaluate, &made.inlined, &made.unshadowed})
                         EXPECT_NE(pipeline->get(), VK_NULL_HANDLE);
                 }

@@ -52,7 +52,7 @@ struct Column {
 const std::vector<Column>& columns() {
     static const std::vector<Column> all = {
         {"VGPRs", {"VGPRs", "Register Count"}},  // RADV, as allocated; NVIDIA
-        {"VGPRs before scheduling", {"Pre-Sched VGPRs"}},
+        {"needed", {"Pre-Sched VGPRs"}},
         {"SGPRs", {"SGPRs"}},
         {"spilled VGPRs", {"Spilled VGPRs"}},
         {"spilled SGPRs", {"Spilled SGPRs"}},
@@ -244,14 +244,28 @@ void printRow(const Row& row, const std::vector<const Column*>& known, bool rdna
     fmt::print("\n");
 }
 
+// What all pipelines have alike stands above the table, and the rest in its columns.
+std::vector<const Column*> printAlike(const std::vector<Row>& rows) {
+    std::vector<const Column*> different;
+    std::string alike;
+    for (const Column& column : columns()) {
+        const std::optional<std::uint64_t> first = rows.front().statistics.of(column);
+        if (!first) continue;
+        if (std::ranges::all_of(rows, [&](const Row& row) { return row.statistics.of(column) == first; }))
+            alike += fmt::format("{}{} {}", alike.empty() ? "" : ", ", column.title, *first);
+        else
+            different.push_back(&column);
+    }
+    if (!alike.empty()) fmt::print("All alike: {}.\n\n", alike);
+    return different;
+}
+
 void print(const DeviceInfo& info, const std::vector<Row>& rows) {
     fmt::print("{}, {}\n\n", info.name, info.driver);
+    const std::vector<const Column*> different = printAlike(rows);
     std::string head = "| pipeline | lanes |", line = "|---|--:|";
-    std::vector<const Column*> known;
-    for (const Column& column : columns()) {
-        if (!rows.front().statistics.of(column)) continue;
-        known.push_back(&column);
-        head += fmt::format(" {} |", column.title);
+    for (const Column* column : different) {
+        head += fmt::format(" {} |", column->title);
         line += "--:|";
     }
     if (isRdna2(info)) {
@@ -259,7 +273,7 @@ void print(const DeviceInfo& info, const std::vector<Row>& rows) {
         line += "--:|--:|";
     }
     fmt::print("{}\n{}\n", head, line);
-    for (const Row& row : rows) printRow(row, known, isRdna2(info));
+    for (const Row& row : rows) printRow(row, different, isRdna2(info));
 }
 
 void report(const std::string& wanted) {

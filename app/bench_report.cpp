@@ -15,7 +15,7 @@ FilterSamples samplesOf(const renderer::RendererDesc& desc) {
     if (desc.filter == Filter::Hard) samples.fetches = 1;
     if (desc.filter == Filter::Pcf) samples.gathers = (desc.pcfRadius + 1.0) * (desc.pcfRadius + 1.0);
     if (desc.filter == Filter::Pcss) {
-        samples.fetches = desc.pcss.searchTaps;
+        samples.gathers = desc.pcss.searchTaps;
         samples.gathersIfMixed = desc.pcss.filterTaps;
     }
     return samples;

@@ -74,7 +74,7 @@ void addLight(GpuLight light, Surface surface, Receiver receiver, inout vec3 sum
 
 vec3 shadeLights(Surface surface, Receiver receiver, uvec2 pixel) {
     vec3 sum = vec3(0.0);
-    uint tile = tileIndexOf(pixel / kShadowTileSizePx);
+    uint tile = tileIndexOf(gl_WorkGroupID.xy);
     uint slotId = tileLightSlotIds[tile];
     if (slotId == kNoListSpace) {
         if (kWalksMasks == 0u) return sum;
@@ -101,7 +101,7 @@ void main() {
 #endif
     uvec2 pixel = tile * kShadowTileSizePx + laneCoordinates(laneIndex());
 #ifdef GNOMON_DEFERRED
-    TileLights tileLights = tileLightsAt(pixel);
+    TileLights tileLights = tileLightsOf(gl_WorkGroupID.xy);
     if (tileLights.evaluate) return;
 #endif
     if (any(greaterThanEqual(pixel, frame.extent.xy))) return;

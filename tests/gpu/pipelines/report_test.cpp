@@ -41,7 +41,8 @@ TEST(PipelineReport, HasEveryPipelineInBothWidths) {
             EXPECT_GT(registers[std::string(once) + lanes], 0) << once << lanes;
             ++expected;
         }
-        for (const char* shadowing : {"generate_shadows", "lighting_evaluate", "lighting_inline", "lighting_inline, lists alone"})
+        for (const char* shadowing :
+             {"generate_shadows", "lighting_evaluate", "lighting_inline", "lighting_inline, lists alone"})
             for (const char* provider : {"hard", "pcf, radius 1", "pcf, radius 3", "pcss"}) {
                 const std::string name = std::string(shadowing) + " (" + provider + ")" + lanes;
                 EXPECT_GT(registers[name], 0) << name;

@@ -41,7 +41,10 @@ struct Floor {
 };
 std::optional<Floor> floorOf(const Measurement& measured, const Variant& variant, const Variant::Row& pass) {
     if (!measured.rates) return std::nullopt;
-    const FrameCounts counts = countsOf(measured.session, variant.last().report);
+    FrameCounts counts = countsOf(measured.session, variant.last().report);
+    // Inline shading stores no slots, but has the same mixed tiles to filter.
+    if (const Variant* deferred = find(measured.variants, "deferred"))
+        counts.slots = deferred->last().report.statistics.finalSlotEntries;
     const std::optional<PassNeed> need = needOf(pass.name, counts, samplesOf(measured.session.rendererDesc()));
     if (!need) return std::nullopt;
     return Floor{*need, floorMs(*need, *measured.rates)};

@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 
+#include "app/bench_preset.h"
 #include "app/bench_report.h"
 #include "app/commands.h"
 #include "app/errors.h"
@@ -22,7 +23,8 @@ struct BenchOptions {
     std::uint32_t warmUp = 20, frames = 200;
     double framesPerSecond = 0.0;
     std::vector<std::string> variants = {"deferred", "inline"};
-    std::string json;
+    std::string preset, json;
+    bool floor = false;
 };
 
 // The renderer remembers two finished frames, so frames go in pairs: submit two, wait, read both.
@@ -69,14 +71,35 @@ std::vector<Variant> measure(renderer::Renderer& renderer, const Session& sessio
     return variants;
 }
 
+// Inline shading is measured without its way out of full lists, so that it is as fast as it can be.
+void checkLists(const std::vector<Variant>& variants) {
+    for (const Variant& variant : variants) {
+        const FrameStatistics& s = variant.last().report.statistics;
+        if (variant.name() != "deferred" && s.listOverflowTiles != 0)
+            throw UsageError(
+                fmt::format("The light lists have no room for {} tiles, which '{}' cannot shade while it is measured: "
+                            "--list-entries {} would hold them.",
+                            s.listOverflowTiles, variant.name(), s.recommendedListEntries));
+    }
+}
+
 void benchWithin(const renderer::VulkanInstance& instance, const BenchOptions& options) {
     const Session session(instance, options.settings);
     if (session.device().timestampPeriodNs() == 0.0)
         throw std::runtime_error(fmt::format("'{}' has no timestamps to measure with.", session.device().info().name));
-    renderer::Renderer renderer(session.device(), session.scene(), session.rendererDesc());
-    const std::vector<Variant> variants = measure(renderer, session, options);
-    if (!options.json.empty()) writeJson(describeBench(session, variants), options.json);
-    printBench(session, variants);
+    renderer::RendererDesc desc = session.rendererDesc();
+    desc.inlineNeedsLists = true;
+    renderer::Renderer renderer(session.device(), session.scene(), desc);
+    Measurement measured = {session, measure(renderer, session, options), std::nullopt};
+    checkLists(measured.variants);
+    if (options.floor) measured.rates = renderer::measureDeviceRates(session.device());
+    if (!options.json.empty()) {
+        Json json = describeBench(measured);
+        if (!options.preset.empty()) json["preset"] = describePreset(options.preset, measured);
+        writeJson(json, options.json);
+    }
+    printBench(measured);
+    printPreset(options.preset, measured);
 }
 
 int bench(const BenchOptions& options) {
@@ -86,6 +109,7 @@ int bench(const BenchOptions& options) {
         shadowModeOf(name);
         if (!names.insert(name).second) throw UsageError(fmt::format("--variants names '{}' twice.", name));
     }
+    checkPreset(options.preset, options.variants);
     checkOutputs({&options.json, 1}, {&options.settings.scene, 1});
     const renderer::VulkanInstance instance(instanceDescOf(options.settings));
     benchWithin(instance, options);
@@ -110,8 +134,15 @@ void addBenchCommand(CLI::App& app, Work& chosen) {
     command->add_option("--variants", options->variants, "Some of deferred,inline,off")
         ->delimiter(',')
         ->capture_default_str();
+    command->add_option("--preset", options->preset, "A table of the paper: sets scene, size, filter and variants")
+        ->check(CLI::IsMember(presetNames()));
+    command->add_flag("--floor", options->floor,
+                      "Measure the device's copies and texture samples too, and how far each pass is from them");
     command->add_option("--json", options->json, "Write the measurement to a file")->check(fileName());
-    command->callback([&chosen, options] { chosen = [options] { return bench(*options); }; });
+    command->callback([&chosen, options, command] {
+        applyPreset(options->preset, *command, options->settings, options->variants);
+        chosen = [options] { return bench(*options); };
+    });
 }
 
 }  // namespace gnomon::app

@@ -1,15 +1,11 @@
 #pragma once
 // The times of several variants, measured in turn, and what is said about them.
 
+#include "app/floor.h"
 #include "app/frame_json.h"
+#include "app/spread.h"
 
 namespace gnomon::app {
-
-struct Spread {
-    double median = 0.0, min = 0.0, p95 = 0.0;
-};
-/// Nearest-rank percentiles; zeros without values.
-Spread spreadOf(std::vector<double> values);
 
 class Variant {
 public:
@@ -25,20 +21,34 @@ public:
         std::vector<double> milliseconds;
     };
     [[nodiscard]] const std::vector<Row>& passes() const { return passes_; }
+    [[nodiscard]] const Row* pass(const std::string& name) const;  ///< null where the variant has no such pass
     [[nodiscard]] const std::vector<double>& drawing() const { return drawing_; }
-    [[nodiscard]] const std::vector<double>& compute() const { return compute_; }  ///< shadow phases and lighting
+    [[nodiscard]] const std::vector<double>& compute() const { return compute_; }    ///< shadow phases and lighting
+    [[nodiscard]] const std::vector<double>& phases() const { return phases_; }      ///< shadow phases alone
+    [[nodiscard]] const std::vector<double>& lighting() const { return lighting_; }  ///< lighting passes alone
     [[nodiscard]] const std::vector<double>& prepare() const { return prepare_; }
 
 private:
     FrameResult last_;
     std::vector<Row> passes_;
-    std::vector<double> drawing_, compute_, prepare_;
+    std::vector<double> drawing_, compute_, phases_, lighting_, prepare_;
 };
+
+/// All that one run of `gnomon bench` found out.
+struct Measurement {
+    const Session& session;
+    std::vector<Variant> variants;
+    std::optional<renderer::DeviceRates> rates;  ///< where floors were asked for
+};
+
+/// Null where that variant was not measured.
+const Variant* find(const std::vector<Variant>& variants, const std::string& name);
 
 /// Median over the rounds of compute time of `a` over that of `b`, frame against neighbouring frame.
 double medianRatio(const Variant& a, const Variant& b);
 
-void printBench(const Session& session, const std::vector<Variant>& variants);
-Json describeBench(const Session& session, const std::vector<Variant>& variants);
+void printBench(const Measurement& measured);
+Json describeBench(const Measurement& measured);
+Json toJson(const std::vector<double>& milliseconds);
 
 }  // namespace gnomon::app

@@ -171,7 +171,7 @@ struct Renderer::State {
           gbuffer(d, scene, r.widthPx, r.heightPx),
           planner(planSettingsOf(d, s, r)),
           atlas(d, scene, planner.settings().atlasSizePx),
-          lighting(d, *context, s, gbuffer, r.quantiseInline),
+          lighting(d, *context, s, gbuffer, {.quantises = r.quantiseInline, .walksMasks = !r.inlineNeedsLists}),
           timer(d, kFramesInFlight),
           commands{Commands(d), Commands(d)} {
         std::ranges::transform(sceneLights, std::back_inserter(shadowLights), shadowLightOf);

@@ -31,6 +31,9 @@ struct RendererDesc {
     std::uint32_t atlasSizePx = 0;  // 0: 4096 up to 1920x1080, above 8192; at most what the device has
     DeviceDepth deviceDepth = DeviceDepth::ReversedZ;
     bool quantiseInline = true;  // inline visibility has the 8 bits of a slot; off: to measure what they cost
+    // Inline and Off leave the lights of tiles without list space out (FrameStatistics::listOverflowTiles counts them):
+    // the fastest inline shading, for measurements.
+    bool inlineNeedsLists = false;
 };
 
 struct PassTime {

@@ -4,10 +4,11 @@
 
 namespace gnomon::renderer {
 
-Device::Device(const VulkanInstance& instance, const DeviceInfo& info, const std::vector<const char*>& extensions)
+Device::Device(const VulkanInstance& instance, const DeviceInfo& info, const std::vector<const char*>& extensions,
+               void* moreFeatures)
     : instance_(instance), info_(info) {
     if (!info.suitable) throw GpuError(info.missing);
-    create(extensions);
+    create(extensions, moreFeatures);
     vkGetDeviceQueue(device_, info_.queueFamily, 0, &queue_);
     memory_ = std::make_unique<MemoryPool>(info_.handle, device_);
     VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr,
@@ -26,13 +27,14 @@ Device::Device(const VulkanInstance& instance, const DeviceInfo& info, const std
     timestampPeriodNs_ = bits == 0 ? 0.0 : static_cast<double>(limits().timestampPeriod);
 }
 
-void Device::create(const std::vector<const char*>& extensions) {
+void Device::create(const std::vector<const char*>& extensions, void* moreFeatures) {
     VkPhysicalDeviceFeatures found{};
     vkGetPhysicalDeviceFeatures(info_.handle, &found);
     features_.samplerAnisotropy = found.samplerAnisotropy;
 
     VkPhysicalDeviceVulkan13Features v13{};
     v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+    v13.pNext = moreFeatures;
     v13.synchronization2 = VK_TRUE;
     v13.dynamicRendering = VK_TRUE;
     v13.computeFullSubgroups = VK_TRUE;

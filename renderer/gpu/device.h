@@ -15,8 +15,10 @@ namespace gnomon::renderer {
 /// samplerAnisotropy where present; robustBufferAccess stays off. Not thread safe.
 class Device {
 public:
-    /// The instance must outlive the device. `extensions` (for example VK_KHR_swapchain) must exist. Throws GpuError.
-    Device(const VulkanInstance& instance, const DeviceInfo& info, const std::vector<const char*>& extensions = {});
+    /// The instance must outlive the device. `extensions` (for example VK_KHR_swapchain) must exist; `moreFeatures` is a
+    /// chain of feature structures that they need. Throws GpuError.
+    Device(const VulkanInstance& instance, const DeviceInfo& info, const std::vector<const char*>& extensions = {},
+           void* moreFeatures = nullptr);
     ~Device();
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
@@ -49,7 +51,7 @@ public:
     void endLabel(VkCommandBuffer commands) const;
 
 private:
-    void create(const std::vector<const char*>& extensions);
+    void create(const std::vector<const char*>& extensions, void* moreFeatures);
     const VulkanInstance& instance_;
     DeviceInfo info_;
     VkPhysicalDeviceFeatures features_{};

@@ -17,6 +17,7 @@
 #endif
 
 layout(constant_id = 16) const uint kQuantise = 1;
+layout(constant_id = 17) const uint kWalksMasks = 1;  // inline: tiles without list space are shaded too
 
 vec3 eyeDirection(Receiver receiver) {
     return isOrthographic() ? -frame.axisZWs.xyz : normalize(frame.eyeWs.xyz - receiver.positionWs);
@@ -73,9 +74,10 @@ void addLight(GpuLight light, Surface surface, Receiver receiver, inout vec3 sum
 
 vec3 shadeLights(Surface surface, Receiver receiver, uvec2 pixel) {
     vec3 sum = vec3(0.0);
-    uint tile = tileIndexOf(pixel / kShadowTileSizePx);
+    uint tile = tileIndexOf(gl_WorkGroupID.xy);
     uint slotId = tileLightSlotIds[tile];
     if (slotId == kNoListSpace) {
+        if (kWalksMasks == 0u) return sum;
         LightWalk walk = beginMaskWalk(pixel);
         uint lightIndex;
         while (nextMaskLight(walk, lightIndex)) addLight(lights[lightIndex], surface, receiver, sum);
@@ -99,7 +101,7 @@ void main() {
 #endif
     uvec2 pixel = tile * kShadowTileSizePx + laneCoordinates(laneIndex());
 #ifdef GNOMON_DEFERRED
-    TileLights tileLights = tileLightsAt(pixel);
+    TileLights tileLights = tileLightsOf(gl_WorkGroupID.xy);
     if (tileLights.evaluate) return;
 #endif
     if (any(greaterThanEqual(pixel, frame.extent.xy))) return;

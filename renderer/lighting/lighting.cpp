@@ -4,22 +4,11 @@
 #include <cmath>
 #include <cstring>
 
-#include "gpu_interface/numbers.h"
 #include "renderer/gpu/error.h"
 #include "renderer/lighting/lighting_data.h"
 
 namespace gnomon::renderer {
 namespace {
-
-constexpr std::uint32_t kDeferredSpirv[] = {
-#include "lighting_deferred.spv.h"
-};
-constexpr std::uint32_t kEvaluateSpirv[] = {
-#include "lighting_evaluate.spv.h"
-};
-constexpr std::uint32_t kInlineSpirv[] = {
-#include "lighting_inline.spv.h"
-};
 
 HostLight hostLightOf(const SceneLight& light) {
     HostLight h = {};
@@ -43,8 +32,8 @@ std::span<const std::byte> bytesOf(const std::vector<T>& values) {
 }  // namespace
 
 Lighting::Lighting(const Device& device, const Context& context, const Scene& scene, const GBuffer& gbuffer,
-                   bool quantiseInline)
-    : device_(device) {
+                   const InlineVariant& inlineVariant)
+    : device_(device), pipelines_(device, context, inlineVariant) {
     const VkExtent2D extent = gbuffer.extent();
     picture_ = GpuImage(
         device, {.name = "picture",
@@ -66,43 +55,15 @@ Lighting::Lighting(const Device& device, const Context& context, const Scene& sc
     uploader.buffer(sceneConstants_, bytesOf(constants));
     uploader.finish();
     createSet(gbuffer);
-
-    const VkDescriptorSetLayout main[] = {context.listsSetLayout(), context.receiversSetLayout(), emptyLayout_,
-                                          ownLayout_};
-    const VkDescriptorSetLayout evaluate[] = {context.listsSetLayout(), context.receiversSetLayout(),
-                                              context.shadowmapsSetLayout(), ownLayout_};
-    mainLayout_ = makePipelineLayout(device, main);
-    evaluateLayout_ = makePipelineLayout(device, evaluate);
-    std::vector<std::uint32_t> constantsOf(gpu::kSpecFirstFree + 1, 0u);
-    std::ranges::copy(context.specializationValues(), constantsOf.begin());
-    constantsOf[gpu::kSpecFirstFree] = quantiseInline ? 1u : 0u;
-    // A device with one size need not, and perhaps cannot, be asked for it.
-    const bool oneSize = device.info().minSubgroupSize == device.info().maxSubgroupSize;
-    const std::uint32_t lanes = oneSize ? 0 : context.subgroupSize();
-    deferred_ = makeComputePipeline(device, kDeferredSpirv, mainLayout_, constantsOf, lanes);
-    evaluate_ = makeComputePipeline(device, kEvaluateSpirv, evaluateLayout_, constantsOf, lanes);
-    inline_ = makeComputePipeline(device, kInlineSpirv, evaluateLayout_, constantsOf, lanes);
-    constantsOf[gpu::kSpecProvider] = gpu::kProviderOff;
-    unshadowed_ = makeComputePipeline(device, kInlineSpirv, evaluateLayout_, constantsOf, lanes);
 }
 
 void Lighting::createSet(const GBuffer& gbuffer) {
-    constexpr VkDescriptorType kSampled = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-    const VkDescriptorType types[] = {kSampled,
-                                      kSampled,
-                                      kSampled,
-                                      kSampled,
-                                      VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                      VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER};
-    ownLayout_ = makeSetLayout(device_, types, VK_SHADER_STAGE_COMPUTE_BIT);
-    emptyLayout_ = makeSetLayout(device_, {}, VK_SHADER_STAGE_COMPUTE_BIT);
-    pool_ = makeDescriptorPool(device_, 1, types);
-    ownSet_ = allocateSet(device_, pool_, ownLayout_);
+    pool_ = makeDescriptorPool(device_, 1, kLightingSetTypes);
+    ownSet_ = allocateSet(device_, pool_, pipelines_.ownSet);
     const GBuffer::Channel channels[] = {GBuffer::BaseColour, GBuffer::Normal, GBuffer::MaterialData,
                                          GBuffer::Emissive};
     for (std::uint32_t i = 0; i < std::size(channels); ++i) {
-        writeImage(device_, ownSet_, i, kSampled, gbuffer.view(channels[i]), VK_NULL_HANDLE);
+        writeImage(device_, ownSet_, i, kLightingSetTypes[i], gbuffer.view(channels[i]), VK_NULL_HANDLE);
     }
     writeImage(device_, ownSet_, 4, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, picture_.view(), VK_NULL_HANDLE,
                VK_IMAGE_LAYOUT_GENERAL);
@@ -133,11 +94,11 @@ void Lighting::recordDeferred(VkCommandBuffer commands, const View& view, GpuTim
     const VkExtent2D tiles = view.tileCounts();
     {
         const GpuScope scope(timer, commands, "lighting");
-        bind(commands, view, deferred_, mainLayout_, false);
+        bind(commands, view, pipelines_.deferred, pipelines_.mainLayout, false);
         vkCmdDispatch(commands, tiles.width, tiles.height, 1);
     }
     const GpuScope scope(timer, commands, "lighting_evaluate");
-    bind(commands, view, evaluate_, evaluateLayout_, true);
+    bind(commands, view, pipelines_.evaluate, pipelines_.evaluateLayout, true);
     vkCmdDispatchIndirect(commands, view.evaluateTilesBuffer(), view.evaluateCommandOffset());
 }
 
@@ -146,7 +107,7 @@ void Lighting::recordInline(VkCommandBuffer commands, const View& view, Lighting
     const VkExtent2D tiles = view.tileCounts();
     const bool shadowed = variant == LightingVariant::Inline;
     const GpuScope scope(timer, commands, shadowed ? "lighting_inline" : "lighting_unshadowed");
-    bind(commands, view, shadowed ? inline_ : unshadowed_, evaluateLayout_, true);
+    bind(commands, view, shadowed ? pipelines_.inlined : pipelines_.unshadowed, pipelines_.evaluateLayout, true);
     vkCmdDispatch(commands, tiles.width, tiles.height, 1);
 }
 

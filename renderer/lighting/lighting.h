@@ -6,9 +6,9 @@
 
 #include "gnomon/tiled_shadows.h"
 #include "renderer/gbuffer/gbuffer.h"
-#include "renderer/gpu/pipeline.h"
 #include "renderer/gpu/resources.h"
 #include "renderer/gpu/timer.h"
+#include "renderer/lighting/lighting_pipelines.h"
 #include "renderer/scene/scene.h"
 
 namespace gnomon::renderer {
@@ -21,9 +21,9 @@ enum class LightingVariant : std::uint8_t {
 /// Writes a linear R16G16B16A16_SFLOAT picture of the G-buffer's extent. Not thread safe.
 class Lighting {
 public:
-    /// Uploads the scene's light data. `quantiseInline`: inline visibility has the 8 bits of a slot.
+    /// Uploads the scene's light data.
     Lighting(const Device& device, const Context& context, const Scene& scene, const GBuffer& gbuffer,
-             bool quantiseInline);
+             const InlineVariant& inlineVariant);
 
     /// After View::recordGenerateShadows(): one dispatch over all tiles, and an indirect one for tiles to be evaluated.
     void recordDeferred(VkCommandBuffer commands, const View& view, GpuTimer* timer);
@@ -41,14 +41,11 @@ private:
               bool shadowmaps);
 
     const Device& device_;
+    LightingPipelines pipelines_;
     GpuImage picture_;
     Buffer hostLights_, sceneConstants_;
-    SetLayout ownLayout_, emptyLayout_;
     DescriptorPool pool_;
     VkDescriptorSet ownSet_ = VK_NULL_HANDLE;
-    PipelineLayout mainLayout_;      // without the set of the shadowmaps
-    PipelineLayout evaluateLayout_;  // with it
-    Pipeline deferred_, evaluate_, inline_, unshadowed_;
     bool pictureReady_ = false;
 };
 

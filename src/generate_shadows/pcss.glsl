@@ -119,34 +119,45 @@ bool leavesFace(ShadowPoint s, PcssKernel k, vec2 px) {
     return k.cube && (any(lessThan(px, s.rectMin + 1.0)) || any(greaterThan(px, s.rectMax - 1.0)));
 }
 
+// Row of a view's matrix without its translation.
+vec3 viewRow(uint view, uint row) {
+    return vec3(shadowViews[view].clipFromWorld[0][row], shadowViews[view].clipFromWorld[1][row],
+                shadowViews[view].clipFromWorld[2][row]);
+}
+
 // A tap beyond the border of a point light's face looks at the face that its direction meets. Returns 1 if lit;
-// `stored` is what is stored there, as a device depth of the receiver's own view.
+// `stored` is what is stored there, as a device depth of the receiver's own view. Views are read field by field: two
+// whole ones at once would cost every caller a dozen registers (docs/register-pressure.md).
 float otherFace(GpuLight light, ShadowPoint s, PcssKernel k, vec2 px, out float stored) {
-    GpuShadowView own = shadowViews[s.view];
-    precise vec2 ndc = (px - own.pxFromNdcOffset) / own.pxFromNdcScale;
-    vec3 x = vec3(own.clipFromWorld[0].x, own.clipFromWorld[1].x, own.clipFromWorld[2].x);
-    vec3 y = vec3(own.clipFromWorld[0].y, own.clipFromWorld[1].y, own.clipFromWorld[2].y);
-    vec3 z = vec3(own.clipFromWorld[0].w, own.clipFromWorld[1].w, own.clipFromWorld[2].w);
-    precise vec3 direction = z + x * (ndc.x / dot(x, x)) + y * (ndc.y / dot(y, y));
+    uint own = s.view;
+    precise vec2 ndc = (px - shadowViews[own].pxFromNdcOffset) / shadowViews[own].pxFromNdcScale;
+    vec3 x = viewRow(own, 0u);
+    vec3 y = viewRow(own, 1u);
+    precise vec3 direction = viewRow(own, 3u) + x * (ndc.x / dot(x, x)) + y * (ndc.y / dot(y, y));
     precise vec2 away = px - s.px;
     precise float planeDepth = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
     float depth = clamp(planeDepth, k.nearest, k.farthest);
-    precise float linear = own.depthFromLinearB / (depth - own.depthFromLinearA);
+    precise float linear = shadowViews[own].depthFromLinearB / (depth - shadowViews[own].depthFromLinearA);
 
-    GpuShadowView view = shadowViews[light.shadowView + cubeFace(direction)];
-    precise vec3 clip = view.clipFromWorld[0].xyw * direction.x + view.clipFromWorld[1].xyw * direction.y +
-                        view.clipFromWorld[2].xyw * direction.z;
-    precise vec2 otherPx = clip.xy / clip.z * view.pxFromNdcScale + view.pxFromNdcOffset;
-    ivec2 texel = ivec2(clamp(floor(otherPx), view.rectMinPx, view.rectMaxPx - 1.0));
-    float there = fetchAtlas(view.atlasAndLayer & 0xFFu, float(view.atlasAndLayer >> 8u), texel);
-    bool reversed = (view.flags & kShadowViewReversedZBit) != 0u;
+    uint other = light.shadowView + cubeFace(direction);
+    precise vec3 clip = shadowViews[other].clipFromWorld[0].xyw * direction.x +
+                        shadowViews[other].clipFromWorld[1].xyw * direction.y +
+                        shadowViews[other].clipFromWorld[2].xyw * direction.z;
+    precise vec2 otherPx =
+        clip.xy / clip.z * shadowViews[other].pxFromNdcScale + shadowViews[other].pxFromNdcOffset;
+    ivec2 texel = ivec2(clamp(floor(otherPx), shadowViews[other].rectMinPx, shadowViews[other].rectMaxPx - 1.0));
+    uint atlasAndLayer = shadowViews[other].atlasAndLayer;
+    float there = fetchAtlas(atlasAndLayer & 0xFFu, float(atlasAndLayer >> 8u), texel);
+    bool reversed = (shadowViews[other].flags & kShadowViewReversedZBit) != 0u;
+    float otherA = shadowViews[other].depthFromLinearA;
+    float otherB = shadowViews[other].depthFromLinearB;
     // No finite depth: as far as the view sees.
     bool finite = linear > 0.0 && linear < 1e15;
-    precise float receiver = view.depthFromLinearA + view.depthFromLinearB / (linear * clip.z);
+    precise float receiver = otherA + otherB / (linear * clip.z);
     if (!finite) receiver = reversed ? 0.0 : 1.0;
     receiver = clamp(receiver, 0.0, 1.0);
-    precise float inverse = (there - view.depthFromLinearA) / view.depthFromLinearB * clip.z;  // 1 / own linear depth
-    precise float asOwn = own.depthFromLinearA + own.depthFromLinearB * inverse;
+    precise float inverse = (there - otherA) / otherB * clip.z;  // 1 / own linear depth
+    precise float asOwn = shadowViews[own].depthFromLinearA + shadowViews[own].depthFromLinearB * inverse;
     stored = asOwn;
     return (reversed ? there <= receiver : there >= receiver) ? 1.0 : 0.0;
 }

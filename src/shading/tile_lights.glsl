@@ -2,7 +2,7 @@
 //
 // The main lighting pipeline, one work group of 64 lanes per shadow tile (or any other shape):
 //
-//     TileLights tile = tileLightsAt(pixel);
+//     TileLights tile = tileLightsOf(gl_WorkGroupID.xy);  // or tileLightsAt(pixel)
 //     if (tile.evaluate) return;                        // the second pipeline shades this tile
 //     for (uint i = 0u; i < tile.count; ++i) {
 //         uint entry = tileLightEntry(tile, i);
@@ -28,8 +28,10 @@ struct TileLights {
     bool evaluate;  // some entry says EVALUATE, or the tile has no list
 };
 
-TileLights tileLightsAt(uvec2 pixel) {
-    uint tile = tileIndexOf(pixel / kShadowTileSizePx);
+// Where the work group is the tile, from gl_WorkGroupID: then a compiler knows that list and lights are the same for all
+// lanes, and keeps them in scalar registers (docs/register-pressure.md).
+TileLights tileLightsOf(uvec2 tileCoordinates) {
+    uint tile = tileIndexOf(tileCoordinates);
     uint word = finalCounts[tile];
     TileLights t;
     t.first = tileLightSlotIds[tile];
@@ -37,6 +39,8 @@ TileLights tileLightsAt(uvec2 pixel) {
     t.evaluate = (word & kFinalEvaluateBit) != 0u;
     return t;
 }
+
+TileLights tileLightsAt(uvec2 pixel) { return tileLightsOf(pixel / kShadowTileSizePx); }
 
 uint tileLightEntry(TileLights tile, uint i) { return finalList[tile.first + i]; }
 

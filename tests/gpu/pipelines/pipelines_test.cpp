@@ -9,12 +9,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 
 #include "gnomon/tiled_shadows.h"
 #include "gpu_interface/numbers.h"
-#include "renderer/gpu/pipeline.h"
+#include "renderer/lighting/lighting_pipelines.h"
 
 namespace gnomon::renderer {
 namespace {
@@ -126,38 +124,6 @@ std::vector<ContextDesc> variantsOf(const ContextDesc& desc) {
     return out;
 }
 
-std::vector<std::uint32_t> readSpirv(const char* name) {
-    const std::filesystem::path path = std::filesystem::path(GNOMON_BINARY_DIR) / "renderer/shaders" / name;
-    std::ifstream in(path, std::ios::binary);
-    std::vector<std::uint32_t> words(std::filesystem::file_size(path) / 4);
-    in.read(reinterpret_cast<char*>(words.data()), static_cast<std::streamsize>(words.size() * 4));
-    return words;
-}
-
-// The lighting pipelines as renderer/lighting makes them, without its images.
-void makeLighting(const Device& device, const Context& context, bool quantise) {
-    constexpr VkDescriptorType kSampled = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-    const VkDescriptorType own[] = {kSampled, kSampled, kSampled, kSampled, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                                    VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER};
-    const SetLayout ownLayout = makeSetLayout(device, own, VK_SHADER_STAGE_COMPUTE_BIT);
-    const SetLayout empty = makeSetLayout(device, {}, VK_SHADER_STAGE_COMPUTE_BIT);
-    const VkDescriptorSetLayout main[] = {context.listsSetLayout(), context.receiversSetLayout(), empty, ownLayout};
-    const VkDescriptorSetLayout evaluate[] = {context.listsSetLayout(), context.receiversSetLayout(),
-                                              context.shadowmapsSetLayout(), ownLayout};
-    std::vector<std::uint32_t> constants(gpu::kSpecFirstFree + 1, 0u);
-    std::ranges::copy(context.specializationValues(), constants.begin());
-    constants[gpu::kSpecFirstFree] = quantise ? 1u : 0u;
-    const PipelineLayout mainLayout = makePipelineLayout(device, main);
-    const PipelineLayout evaluateLayout = makePipelineLayout(device, evaluate);
-    const std::uint32_t lanes = context.subgroupSize();
-    for (const char* name : {"lighting_deferred.spv", "lighting_evaluate.spv", "lighting_inline.spv"}) {
-        const bool deferred = std::string_view(name) == "lighting_deferred.spv";
-        const Pipeline made =
-            makeComputePipeline(device, readSpirv(name), deferred ? mainLayout : evaluateLayout, constants, lanes);
-        EXPECT_NE(made.get(), VK_NULL_HANDLE) << name;
-    }
-}
-
 TEST_F(PipelinesTest, EveryVariantOfTheLibrary) {
     for (const DeviceInfo& info : devices_) {
         const Device device(*instance(), info);
@@ -187,7 +153,11 @@ TEST_F(PipelinesTest, LightingOfTheRenderer) {
                 std::unique_ptr<Context> context;
                 const Result result = Context::create(variant, context);
                 ASSERT_TRUE(result) << info.name << ": " << result.message();
-                for (const bool quantise : {false, true}) makeLighting(device, *context, quantise);
+                for (const bool on : {false, true}) {
+                    const LightingPipelines made(device, *context, {.quantises = on, .walksMasks = on});
+                    for (const Pipeline* pipeline : {&made.deferred, &made.evaluate, &made.inlined, &made.unshadowed})
+                        EXPECT_NE(pipeline->get(), VK_NULL_HANDLE);
+                }
             }
         }
     }

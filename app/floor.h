@@ -1,0 +1,37 @@
+#pragma once
+// The floor of a compute pass: the time that the bytes and texture samples which it cannot do without need at the
+// device's own measured rates (renderer/rates). Arithmetic is not in it.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "renderer/rates/device_rates.h"
+
+namespace gnomon::app {
+
+/// What a frame's statistics say of its amount of work.
+struct FrameCounts {
+    double pixels = 0, tiles = 0, tilesWithGeometry = 0, tileGroups = 0, maskTiles = 0;
+    double visibleLights = 0, shadowViews = 0;
+    double earlyEntries = 0, earlyCastingEntries = 0, finalEntries = 0, slots = 0;  // of (tile, light) pairs
+    double slotBytes = 64;
+};
+FrameCounts frameCounts(std::uint32_t widthPx, std::uint32_t heightPx);  // what follows from the extent
+
+/// Samples of a shadowmap that the filter takes for one pixel and light.
+struct FilterSamples {
+    double fetches = 0, gathers = 0;  // always
+    double gathersIfMixed = 0;        // and where the tile is neither wholly lit nor wholly dark
+};
+
+struct PassNeed {
+    double bytes = 0, fetches = 0, gathers = 0;
+};
+/// Nothing for passes whose amount of work no statistic tells.
+std::optional<PassNeed> needOf(const std::string& pass, const FrameCounts& counts, const FilterSamples& samples);
+
+/// Memory and texture units work side by side, so it is the longer of the two.
+double floorMs(const PassNeed& need, const renderer::DeviceRates& rates);
+
+}  // namespace gnomon::app

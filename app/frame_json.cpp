@@ -20,6 +20,7 @@ Json settingsOf(const Settings& s) {
             {"pcssTaps", s.taps},
             {"patternPerFrame", s.patternPerFrame},
             {"visibilityBits", s.visibilityBits},
+            {"shadowBounds", !s.noShadowBounds && s.filter == "pcss"},
             {"listEntries", s.listEntries},
             {"visibilitySlots", s.visibilitySlots},
             {"reservation", s.reservation},

@@ -85,6 +85,8 @@ void addSettings(CLI::App& command, Settings& s) {
                     "low, medium, high, or SEARCH,FILTER: texels of the search and taps of the filter, as in 16,24")
         ->capture_default_str();
     command.add_flag("--pattern-per-frame", s.patternPerFrame, "Turn the sample pattern of pcss from frame to frame");
+    command.add_flag("--no-shadow-bounds", s.noShadowBounds,
+                     "pcss searches everywhere, also where the bounds of the shadowmaps tell the result");
     command.add_option("--visibility-bits", s.visibilityBits, "Bits of a pixel's visibility in a slot")
         ->check(CLI::IsMember({4, 8}))
         ->capture_default_str();
@@ -116,6 +118,7 @@ renderer::RendererDesc rendererDescOf(const Settings& s) {
     desc.pcss = parseTaps(s.taps);
     desc.patternPerFrame = s.patternPerFrame;
     desc.visibilityBits = s.visibilityBits;
+    desc.shadowBounds = !s.noShadowBounds && desc.filter == Filter::Pcss;
     desc.listReservation = s.reservation == "accurate" ? ListReservation::Accurate
                            : s.reservation == "fixed"  ? ListReservation::Fixed
                                                        : ListReservation::Approximate;

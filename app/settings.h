@@ -27,6 +27,7 @@ struct Settings {
     std::string taps = "medium";
     bool patternPerFrame = false;
     std::uint32_t visibilityBits = 8;
+    bool noShadowBounds = false;
     std::string device;
     bool validate = false;
     std::uint32_t listEntries = 0, visibilitySlots = 0;

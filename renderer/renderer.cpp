@@ -51,13 +51,14 @@ std::unique_ptr<Context> makeContext(const Device& device, const RendererDesc& d
     return context;
 }
 
-std::unique_ptr<View> makeView(const Context& context, const RendererDesc& desc) {
+std::unique_ptr<View> makeView(const Context& context, const RendererDesc& desc, std::uint64_t texelsOfAtlas) {
     ViewDesc v;
     v.maxWidthPx = desc.widthPx;
     v.maxHeightPx = desc.heightPx;
     v.framesInFlight = kFramesInFlight;
     v.listEntries = desc.listEntries;
     v.visibilitySlots = desc.visibilitySlots;
+    v.shadowBoundsTexels = desc.shadowBounds ? texelsOfAtlas : 0;
     v.maxShadowViews = gpu::kMaxLightsPerView * gpu::kPointLightFaces;
     std::unique_ptr<View> view;
     require(View::create(context, v, view));
@@ -166,7 +167,8 @@ struct Renderer::State {
           posable(posablePart(s)),
           pose(poseAt(posable, 0.0)),
           context(makeContext(d, r)),
-          view(makeView(*context, r)),
+          view(makeView(*context, r,
+                        std::uint64_t{planSettingsOf(d, s, r).atlasSizePx} * planSettingsOf(d, s, r).atlasSizePx)),
           scene(d, s),
           gbuffer(d, scene, r.widthPx, r.heightPx),
           planner(planSettingsOf(d, s, r)),
@@ -186,8 +188,7 @@ struct Renderer::State {
     std::vector<Light> lightsOf(const glm::dvec3& origin, const ShadowPlan& plan) const;
     void selectCasters(const Camera& camera, const glm::dvec3& origin);
     void beginView(const Camera& camera, const glm::dvec3& origin, const ShadowPlan& plan);
-    void recordPasses(VkCommandBuffer c, const GBufferCamera& camera, const ShadowPlan& plan, ShadowMode mode,
-                      FrameReport& report);
+    void recordPasses(VkCommandBuffer c, const GBufferCamera& camera, ShadowMode mode, FrameReport& report);
 };
 
 Renderer::Renderer(const Device& device, const Scene& scene, const RendererDesc& desc)
@@ -276,11 +277,12 @@ void Renderer::State::beginView(const Camera& camera, const glm::dvec3& origin, 
     frame.receiverFlags = {gbuffer.view(GBuffer::Receiver)};
     frame.atlases = atlases;
     frame.patternPerFrame = desc.patternPerFrame;
+    frame.shadowBounds = desc.shadowBounds;
     require(view->beginFrame(frame));
 }
 
-void Renderer::State::recordPasses(VkCommandBuffer c, const GBufferCamera& camera, const ShadowPlan& plan,
-                                   ShadowMode mode, FrameReport& report) {
+void Renderer::State::recordPasses(VkCommandBuffer c, const GBufferCamera& camera, ShadowMode mode,
+                                   FrameReport& report) {
     {
         const GpuScope scope(&timer, c, "gbuffer");
         gbuffer.record(c, scene, camera);
@@ -290,10 +292,11 @@ void Renderer::State::recordPasses(VkCommandBuffer c, const GBufferCamera& camer
     view->recordFindLightsAccurate(c);
     {
         const GpuScope scope(&timer, c, "shadow_atlas");
-        const ShadowAtlasStatistics drawn = atlas.record(c, scene, shadowLights, plan);
+        const ShadowAtlasStatistics drawn = atlas.record(c, scene);
         report.shadowViewsDrawn = drawn.viewsDrawn;
         report.shadowTrianglesDrawn = drawn.triangles;
     }
+    if (desc.shadowBounds && mode != ShadowMode::Off) view->recordShadowBounds(c);
     switch (mode) {
         case ShadowMode::Deferred:
             view->recordGenerateShadows(c);
@@ -323,8 +326,9 @@ std::uint64_t Renderer::renderFrame(const SceneCamera& cameraAtRest, ShadowMode 
     const GBufferCamera gbufferCamera = gbufferCameraOf(camera);
     s.scene.recordTransforms(c, origin);
     s.selectCasters(camera, origin);
-    const ShadowPlan plan = s.planner.plan(
+    ShadowPlan plan = s.planner.plan(
         s.shadowLights, planCameraOf(sceneCamera, gbufferCamera, origin, s.desc.widthPx, s.desc.heightPx), origin);
+    s.atlas.prepare(s.scene, s.shadowLights, plan);
     s.beginView(camera, origin, plan);
 
     State::Known& known = s.known[number % kFramesInFlight];
@@ -334,7 +338,7 @@ std::uint64_t Renderer::renderFrame(const SceneCamera& cameraAtRest, ShadowMode 
     known.report.shadowLightsShrunk = plan.lightsShrunk;
     known.report.shadowLightsDropped = plan.lightsWithout;
     known.report.atlasSizePx = s.planner.settings().atlasSizePx;
-    s.recordPasses(c, gbufferCamera, plan, mode, known.report);
+    s.recordPasses(c, gbufferCamera, mode, known.report);
     commands.submit();
     ++s.frameNumber;
     return number;
@@ -367,7 +371,10 @@ FrameReport Renderer::report(std::uint64_t frameNumber) const {
             library("find_lights_approximate");
             library("find_lights_accurate");
         }
-        if (time.name == "shadow_atlas") library("generate_shadows");
+        if (time.name == "shadow_atlas") {
+            library("shadow_bounds");
+            library("generate_shadows");
+        }
     }
     if (!report.passes.empty()) library("gather_statistics");
     return report;

@@ -24,6 +24,7 @@ struct RendererDesc {
     PcssTaps pcss = kPcssMedium;
     bool patternPerFrame = false;
     std::uint32_t visibilityBits = 8;
+    bool shadowBounds = true;  // searches of Filter::Pcss end where the bounds of the shadowmaps tell the result
     ListReservation listReservation = ListReservation::Accurate;
     std::uint32_t fixedListEntriesPerTile = 32;          // with ListReservation::Fixed
     std::uint32_t subgroupSize = 0;                      // 0: the device's own

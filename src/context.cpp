@@ -69,8 +69,8 @@ Result checkDesc(const ContextDesc& desc) {
     return {};
 }
 
-// Of the set of the lists all but the frame's uniform buffer, and the shadow views.
-constexpr std::uint32_t kStorageBuffersNeeded = kListsBindingCount - 1 + 1;
+// Of the set of the lists all but the frame's uniform buffer; the shadow views, the shadow bounds and their cells.
+constexpr std::uint32_t kStorageBuffersNeeded = kListsBindingCount - 1 + 3;
 
 // The subgroup size that pipelines will ask for, checked against what the device can do.
 // `require` says whether they may ask for it: a device that cannot be asked always runs its own size.
@@ -132,7 +132,8 @@ Result createLayouts(Context::State& state) {
     for (std::uint32_t i = 0; i < kShadowmapsBindingCount; ++i) {
         shadowmaps[i] = {i, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1, kStages, nullptr};
     }
-    shadowmaps[kBindShadowViews].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    for (std::uint32_t binding : {kBindShadowViews, kBindShadowBounds, kBindShadowBoundsCells})
+        shadowmaps[binding].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     shadowmaps[kBindShadowSampler].descriptorType = VK_DESCRIPTOR_TYPE_SAMPLER;
     shadowmaps[kBindShadowSampler].pImmutableSamplers = &state.shadowSampler;
 

@@ -14,6 +14,9 @@ constexpr std::uint32_t kFindLightsApproximateSpirv[] = {
 constexpr std::uint32_t kFindLightsAccurateSpirv[] = {
 #include "find_lights_accurate.spv.h"
 };
+constexpr std::uint32_t kShadowBoundsSpirv[] = {
+#include "shadow_bounds.spv.h"
+};
 constexpr std::uint32_t kGenerateShadowsSpirv[] = {
 #include "generate_shadows.spv.h"
 };
@@ -43,11 +46,18 @@ constexpr Pass kPasses[kPassCount] = {
      .reads = bufferBit(kBindTileDepthRanges) | bufferBit(kBindTileGroupLightMasks) | bufferBit(kBindApproximateCounts),
      .writes = bufferBit(kBindTileLightSlotIds) | bufferBit(kBindEarlyList) | bufferBit(kBindEarlyCounts) |
                bufferBit(kBindCounters)},
+    {.name = "shadow_bounds",
+     .spirv = kShadowBoundsSpirv,
+     .receivers = true,
+     .shadowmaps = true,
+     .reads = 0,
+     .writes = kShadowBoundsBit},
     {.name = "generate_shadows",
      .spirv = kGenerateShadowsSpirv,
      .receivers = true,
      .shadowmaps = true,
-     .reads = bufferBit(kBindTileLightSlotIds) | bufferBit(kBindEarlyList) | bufferBit(kBindEarlyCounts),
+     .reads =
+         bufferBit(kBindTileLightSlotIds) | bufferBit(kBindEarlyList) | bufferBit(kBindEarlyCounts) | kShadowBoundsBit,
      .writes = bufferBit(kBindFinalList) | bufferBit(kBindFinalCounts) | bufferBit(kBindVisibility) |
                bufferBit(kBindEvaluateTiles) | bufferBit(kBindCounters)},
     {.name = "gather_statistics",

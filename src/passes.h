@@ -13,6 +13,7 @@ enum PassId : std::uint32_t {
     kPassHierarchicalDepth,
     kPassFindLightsApproximate,
     kPassFindLightsAccurate,
+    kPassShadowBounds,
     kPassGenerateShadows,
     kPassGatherStatistics,
     kPassCount,
@@ -23,6 +24,9 @@ using BufferBits = std::uint32_t;
 constexpr BufferBits bufferBit(std::uint32_t binding) {
     return 1u << binding;
 }
+
+// The shadow bounds, which are in the set of the shadowmaps.
+constexpr BufferBits kShadowBoundsBit = 1u << 31;
 
 struct Pass {
     const char* name;  // the shader's file name, the label in a capture, the row in every table

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstring>
 #include <new>
+#include <utility>
 
 #include "gpu_interface/packing.h"
 #include "shadow_views.h"
@@ -102,6 +103,11 @@ ViewSizes sizesOf(const Context::State& context, const ViewDesc& desc) {
     return s;
 }
 
+// At least one, so that there is a buffer to bind.
+std::uint32_t boundsCellsOf(const ViewDesc& desc) {
+    return std::max(shadowBoundsCellsFor(desc.shadowBoundsTexels), 1u);
+}
+
 MemoryReport reportOf(const ViewDesc& desc, const ViewSizes& sizes) {
     MemoryReport r;
     const auto add = [&](const char* name, std::uint64_t bytes, bool perFrame, bool mapped) {
@@ -110,6 +116,9 @@ MemoryReport reportOf(const ViewDesc& desc, const ViewSizes& sizes) {
     };
     for (const BufferDecl& decl : kBuffers) add(decl.name, sizes.bytes[decl.binding], decl.perFrame, decl.perFrame);
     add("shadow_views", VkDeviceSize(desc.maxShadowViews) * sizeof(GpuShadowView), true, true);
+    const std::uint32_t cells = boundsCellsOf(desc);
+    add("shadow_bounds", shadowBoundsBytes(cells), false, false);
+    add("shadow_bounds_cells", VkDeviceSize(cells) * sizeof(GpuShadowBoundsCell), true, true);
     add("statistics_readback", kReadbackBytes, true, true);
     r.listEntries = sizes.listEntries;
     r.visibilitySlots = sizes.visibilitySlots;
@@ -144,8 +153,20 @@ Result createBuffers(View::State& state) {
             }
         }
     }
+    const std::uint32_t cells = boundsCellsOf(state.desc);
+    if (Result made = createBuffer(device, "shadow_bounds", shadowBoundsBytes(cells), kDeviceUsage, MemoryUse::Device,
+                                   state.shadowBounds);
+        !made) {
+        return made;
+    }
+    state.boundsCells.create(state.desc.shadowBoundsTexels == 0 ? 0 : cells);
     for (std::uint32_t i = 0; i < state.desc.framesInFlight; ++i) {
         FrameSlot& slot = state.slots[i];
+        if (Result made = createBuffer(device, "shadow_bounds_cells", cells * sizeof(GpuShadowBoundsCell),
+                                       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryUse::Streamed, slot.boundsCells);
+            !made) {
+            return made;
+        }
         const VkDeviceSize bytes = VkDeviceSize(state.desc.maxShadowViews) * sizeof(GpuShadowView);
         if (Result made = createBuffer(device, "shadow_views", bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                                        MemoryUse::Streamed, slot.shadowViews);
@@ -166,7 +187,7 @@ Result createPools(View::State& state) {
     const std::uint32_t frames = state.desc.framesInFlight;
     const VkDescriptorPoolSize poolSizes[] = {
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, frames},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, frames * kListsBindingCount},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, frames * (kListsBindingCount + 2)},
         {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, frames * (kReceiversBindingCount + kMaxShadowAtlases)},
         {VK_DESCRIPTOR_TYPE_SAMPLER, frames},
     };
@@ -202,8 +223,8 @@ void writeListsSets(View::State& state) {
     const DeviceContext& device = state.context->device;
     for (std::uint32_t i = 0; i < state.desc.framesInFlight; ++i) {
         FrameSlot& slot = state.slots[i];
-        VkDescriptorBufferInfo infos[kListsBindingCount + 1] = {};
-        VkWriteDescriptorSet writes[kListsBindingCount + 1] = {};
+        VkDescriptorBufferInfo infos[kListsBindingCount + 3] = {};
+        VkWriteDescriptorSet writes[kListsBindingCount + 3] = {};
         for (const BufferDecl& decl : kBuffers) {
             const std::uint32_t b = decl.binding;
             infos[b].buffer = decl.perFrame ? slot.streamed[b].buffer : state.device[b].buffer;
@@ -220,18 +241,17 @@ void writeListsSets(View::State& state) {
                          &infos[b],
                          nullptr};
         }
-        infos[kListsBindingCount] = {slot.shadowViews.buffer, 0, VK_WHOLE_SIZE};
-        writes[kListsBindingCount] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                      nullptr,
-                                      slot.shadowmaps,
-                                      kBindShadowViews,
-                                      0,
-                                      1,
-                                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                      nullptr,
-                                      &infos[kListsBindingCount],
-                                      nullptr};
-        device.vk.UpdateDescriptorSets(device.device, kListsBindingCount + 1, writes, 0, nullptr);
+        const std::pair<std::uint32_t, VkBuffer> others[] = {{kBindShadowViews, slot.shadowViews.buffer},
+                                                             {kBindShadowBounds, state.shadowBounds.buffer},
+                                                             {kBindShadowBoundsCells, slot.boundsCells.buffer}};
+        std::uint32_t count = kListsBindingCount;
+        for (const auto& [binding, buffer] : others) {
+            infos[count] = {buffer, 0, VK_WHOLE_SIZE};
+            writes[count] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, slot.shadowmaps, binding, 0, 1,
+                             VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,      nullptr, &infos[count],   nullptr};
+            ++count;
+        }
+        device.vk.UpdateDescriptorSets(device.device, count, writes, 0, nullptr);
     }
 }
 
@@ -328,8 +348,10 @@ View::State::~State() {
     for (FrameSlot& slot : slots) {
         for (DeviceBuffer& buffer : slot.streamed) destroyBuffer(d, buffer);
         destroyBuffer(d, slot.shadowViews);
+        destroyBuffer(d, slot.boundsCells);
         destroyBuffer(d, slot.readback);
     }
+    destroyBuffer(d, shadowBounds);
     destroyImage(d, noFaceNormals);
     destroyImage(d, noAtlas);
     d.vk.DestroyDescriptorPool(d.device, descriptors, nullptr);
@@ -403,6 +425,12 @@ Result View::beginFrame(const FrameDesc& frame, PrepareReport* report) noexcept 
             convertShadowViews(frame.shadowViews, frame.atlases, static_cast<GpuShadowView*>(slot.shadowViews.mapped));
         !converted) {
         return converted;
+    }
+    slot.boundsCellCount = 0;
+    if (frame.shadowBounds) {
+        slot.boundsCellCount = state.boundsCells.list(frame.shadowViews, frame.atlases,
+                                                      static_cast<GpuShadowView*>(slot.shadowViews.mapped),
+                                                      static_cast<GpuShadowBoundsCell*>(slot.boundsCells.mapped));
     }
     completeFrameConstants(state, frame, constants);
     std::memcpy(slot.streamed[kBindFrame].mapped, &constants, sizeof(constants));

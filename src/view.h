@@ -6,6 +6,7 @@
 #include "context.h"
 #include "gpu_interface/numbers.h"
 #include "gpu_interface/structs.h"
+#include "shadow_bounds/cells.h"
 
 namespace gnomon {
 
@@ -32,7 +33,9 @@ struct FrameSlot {
     bool ended = false;                              // recordEndFrame() was called
     DeviceBuffer streamed[gpu::kListsBindingCount];  // those that are per frame, by binding
     DeviceBuffer shadowViews;
-    DeviceBuffer readback;  // GpuCounters, GpuEvaluateHead
+    DeviceBuffer boundsCells;
+    std::uint32_t boundsCellCount = 0;  // to be made in this frame
+    DeviceBuffer readback;              // GpuCounters, GpuEvaluateHead
     VkDescriptorSet lists = VK_NULL_HANDLE;
     VkDescriptorSet receivers = VK_NULL_HANDLE;
     VkDescriptorSet shadowmaps = VK_NULL_HANDLE;
@@ -49,7 +52,10 @@ struct View::State {
     MemoryReport memory;
     std::unique_ptr<Prepare> prepare;
     DeviceBuffer device[gpu::kListsBindingCount];  // those that are not per frame, by binding
-    DeviceImage noFaceNormals;                     // stand in for what the host does not have
+    DeviceBuffer shadowBounds;
+    std::uint32_t boundsCellCapacity = 0;
+    ShadowBoundsCells boundsCells;
+    DeviceImage noFaceNormals;  // stand in for what the host does not have
     DeviceImage noAtlas;
     VkDescriptorPool descriptors = VK_NULL_HANDLE;
     VkQueryPool queries = VK_NULL_HANDLE;

@@ -172,6 +172,13 @@ void View::recordFindLightsAccurate(VkCommandBuffer commands) noexcept {
     publish(*state_, commands);
 }
 
+void View::recordShadowBounds(VkCommandBuffer commands) noexcept {
+    State& state = *state_;
+    const std::uint32_t cells = state.slots[state.current].boundsCellCount;
+    if (cells != 0) recordPass(state, commands, kPassShadowBounds, cells, 1);
+    publish(state, commands);
+}
+
 void View::recordGenerateShadows(VkCommandBuffer commands) noexcept {
     recordPass(*state_, commands, kPassGenerateShadows, state_->frame.tileCounts.x, state_->frame.tileCounts.y);
     publish(*state_, commands);

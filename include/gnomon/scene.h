@@ -82,6 +82,8 @@ struct ShadowView {
     float farMetres = std::numeric_limits<float>::infinity();  ///< infinity allowed for perspective views
     bool orthographic = false;
     DeviceDepth deviceDepth = DeviceDepth::ReversedZ;
+    /// False promises that the rectangle holds what it held in the frame before; its shadow bounds are then kept.
+    bool changed = true;
 };
 
 /// What phase 1 needs of one frame and view.

@@ -10,6 +10,7 @@
 //     view.recordHierarchicalDepth(commands);          // needs the host's depth
 //     view.recordFindLightsApproximate(commands);      // phase 2 \  need no shadowmap: may run on an async compute
 //     view.recordFindLightsAccurate(commands);         // phase 3 /  queue while shadowmaps are drawn
+//     view.recordShadowBounds(commands);               // optional, needs the shadowmaps
 //     view.recordGenerateShadows(commands);            // phase 4, needs the shadowmaps
 //     ... the host's lighting, with listsSet(): see src/shading/tile_lights.glsl ...
 //     view.recordEndFrame(commands);                   // statistics; after the lighting
@@ -113,6 +114,9 @@ struct ViewDesc {
     std::uint32_t listEntries = 0;
     std::uint32_t visibilitySlots = 0;
     std::uint32_t maxShadowViews = 4096;
+    /// Texels of all shadow atlases and layers for which recordShadowBounds() keeps bounds (11 bytes per 256); frames
+    /// with larger atlases do without. 0: never.
+    std::uint64_t shadowBoundsTexels = std::uint64_t{8192} * 8192;
     bool timestamps = true;  ///< GPU times of every pass in the statistics (needs a queue with timestamps)
     bool statistics = true;  ///< the means over tiles (one small extra pass)
     /// Testing: bytes that are left free before and after the contents of every device buffer, and are never written.
@@ -164,6 +168,7 @@ struct FrameDesc {
     /// tile of the active viewport.
     HostImage depthPyramid;
     std::span<const ShadowAtlas> atlases;  ///< up to 4
+    bool shadowBounds = false;             ///< recordShadowBounds() will be called in this frame
     float subsurfaceBiasMetres = 0.02f;
     /// Turns the sample pattern of Filter::Pcss from frame to frame, for hosts that accumulate frames.
     bool patternPerFrame = false;
@@ -223,6 +228,10 @@ public:
     /// Afterwards the early lists are visible to all shaders. A host that evaluates every shadow while lighting may
     /// leave out phase 4.
     void recordFindLightsAccurate(VkCommandBuffer commands) noexcept;
+    /// Optional, with FrameDesc::shadowBounds: least and greatest depths of blocks of the atlases, of the views that
+    /// changed. Filter::Pcss, in phase 4 as in the host's own shaders, then leaves out searches whose result they tell;
+    /// not a bit of the result changes. After the shadowmaps are drawn; afterwards visible to all shaders.
+    void recordShadowBounds(VkCommandBuffer commands) noexcept;
     /// Afterwards the final lists, the visibility and the indirect command are visible to all shaders and to indirect
     /// dispatch.
     void recordGenerateShadows(VkCommandBuffer commands) noexcept;

@@ -82,14 +82,14 @@ ShadowAtlasImage::Key ShadowAtlasImage::keyOf(const ShadowLight& light, const Pl
             view.size};
 }
 
-void ShadowAtlasImage::findTasks(const GpuScene& scene, std::span<const ShadowLight> lights, const ShadowPlan& plan,
-                                 ShadowAtlasStatistics& statistics) {
+void ShadowAtlasImage::prepare(const GpuScene& scene, std::span<const ShadowLight> lights, ShadowPlan& plan) {
+    statistics_ = {};
     tasks_.clear();
     ranges_.clear();
     std::unordered_map<std::uint64_t, Drawn> now;
     now.reserve(plan.views.size());
     std::uint32_t candidatesOf = kNone;
-    for (const PlannedView& view : plan.views) {
+    for (PlannedView& view : plan.views) {
         const ShadowLight& light = lights[view.light];
         const std::uint64_t id = std::uint64_t{view.light} * 8 + view.face;
         const Key key = keyOf(light, view);
@@ -101,8 +101,9 @@ void ShadowAtlasImage::findTasks(const GpuScene& scene, std::span<const ShadowLi
                             (old->second.castersRevision == scene.castersRevision() ||
                              !scene.changedSince(old->second.castersRevision, volume()));
         now.emplace(id, Drawn{key, scene.castersRevision()});
+        view.view.changed = !cached;
         if (cached) {
-            ++statistics.viewsCached;
+            ++statistics_.viewsCached;
             continue;
         }
         if (candidatesOf != view.light) {
@@ -115,8 +116,8 @@ void ShadowAtlasImage::findTasks(const GpuScene& scene, std::span<const ShadowLi
         scene.cull(volume(), candidates_, visible);
         ranges_.insert(ranges_.end(), visible.begin(), visible.end());
         tasks_.push_back({&view, first, static_cast<std::uint32_t>(ranges_.size()) - first});
-        statistics.drawnViews.push_back(static_cast<std::uint32_t>(&view - plan.views.data()));
-        ++statistics.viewsDrawn;
+        statistics_.drawnViews.push_back(static_cast<std::uint32_t>(&view - plan.views.data()));
+        ++statistics_.viewsDrawn;
     }
     drawn_ = std::move(now);
 }
@@ -183,10 +184,8 @@ void ShadowAtlasImage::drawLayer(VkCommandBuffer commands, const GpuScene& scene
     vkCmdEndRendering(commands);
 }
 
-ShadowAtlasStatistics ShadowAtlasImage::record(VkCommandBuffer commands, const GpuScene& scene,
-                                               std::span<const ShadowLight> lights, const ShadowPlan& plan) {
-    ShadowAtlasStatistics statistics;
-    findTasks(scene, lights, plan, statistics);
+ShadowAtlasStatistics ShadowAtlasImage::record(VkCommandBuffer commands, const GpuScene& scene) {
+    ShadowAtlasStatistics statistics = statistics_;
     if (!tasks_.empty()) {
         constexpr Access kReaders{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE};
         VkImageMemoryBarrier2 barrier = imageBarrier(image_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kReaders,

@@ -32,11 +32,13 @@ public:
     /// Creates the image, wholly unoccluded. The scene gives the set layouts. Throws GpuError.
     ShadowAtlasImage(const Device& device, const GpuScene& scene, std::uint32_t sizePx, std::uint32_t layers = 1);
 
-    /// Draws what changed: a view is drawn again if its light or its rectangle changed, or if something moved in its
-    /// volume. `lights` is what the plan was made from. After GpuScene::recordTransforms() with the plan's origin,
-    /// outside of rendering. Afterwards visible to sampled reads of compute and fragment shaders.
-    ShadowAtlasStatistics record(VkCommandBuffer commands, const GpuScene& scene, std::span<const ShadowLight> lights,
-                                 const ShadowPlan& plan);
+    /// Finds what changed: a view is drawn again if its light or its rectangle changed, or if something moved in its
+    /// volume; said in the plan's views as ShadowView::changed. `lights` is what the plan was made from. After
+    /// GpuScene::recordTransforms() with the plan's origin. The plan must stay where it is until record().
+    void prepare(const GpuScene& scene, std::span<const ShadowLight> lights, ShadowPlan& plan);
+    /// Draws what prepare() found, outside of rendering. Afterwards visible to sampled reads of compute and fragment
+    /// shaders.
+    ShadowAtlasStatistics record(VkCommandBuffer commands, const GpuScene& scene);
 
     [[nodiscard]] const GpuImage& image() const { return image_; }
     /// For FrameDesc::atlases.
@@ -64,8 +66,6 @@ private:
         std::uint32_t firstRange, rangeCount;
     };
     [[nodiscard]] static Key keyOf(const ShadowLight& light, const PlannedView& view);
-    void findTasks(const GpuScene& scene, std::span<const ShadowLight> lights, const ShadowPlan& plan,
-                   ShadowAtlasStatistics& statistics);
     void drawLayer(VkCommandBuffer commands, const GpuScene& scene, std::uint32_t layer,
                    ShadowAtlasStatistics& statistics) const;
     void drawView(VkCommandBuffer commands, const GpuScene& scene, const Task& task,
@@ -78,6 +78,7 @@ private:
     Pipeline opaque_, masked_;
     std::unordered_map<std::uint64_t, Drawn> drawn_;  // per light * 8 + face
     std::vector<Task> tasks_;
+    ShadowAtlasStatistics statistics_;  // of the plan prepared last
     std::vector<DrawRange> ranges_;
     std::vector<GpuScene::Candidate> candidates_;
 };

@@ -10,6 +10,7 @@
 // not count. (3) Search taps, four texels each, crowd toward the middle (radius by the square), where near blockers must
 // be found; filter taps are spread evenly, each a bilinear comparison. (4) A pixel in which no texel of the search is a
 // blocker is lit, one in which all occlude is dark.
+// Shadow bounds, where the host has them made, tell that of most pixels before any tap.
 // (5) The pattern is a spiral of golden angles, turned per pixel by a sequence of low discrepancy in whole numbers: every
 // pipeline and device sees the same one. (6) A blocker is nearer to the light than the receiver: a tap's plane depth
 // grows beyond the receiver's by one texel's slope at most, else walls behind the receiver would shadow it.
@@ -18,6 +19,7 @@
 #define GNOMON_GENERATE_SHADOWS_PCSS_GLSL
 
 #include "generate_shadows/shadowmap.glsl"
+#include "shadow_bounds/shadow_bounds.glsl"
 
 layout(constant_id = 5) const uint kPcssSearchTaps = 16;
 layout(constant_id = 6) const uint kPcssFilterTaps = 24;
@@ -195,6 +197,35 @@ void countBlockers(PcssKernel k, float radius, vec4 lit, vec4 stored, inout Bloc
     found = Blockers(occluding, blocking, depths);
 }
 
+// What the shadow bounds tell of a search of radius `reach` that stays in the rectangle. True where they tell all. Else
+// `needed` is the radius beyond which no blocker can be: the nearest depth in the region bounds what the source can see
+// of it, and a smaller region may hold only farther ones.
+bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, out float needed, out float visibility) {
+    needed = reach;
+    visibility = 1.0;
+    for (uint i = 0u; i < 3u; ++i) {
+        vec2 extent = needed * (abs(k.right) + abs(k.down)) + 1.5;
+        bool known;
+        vec2 bounds = shadowBoundsOver(s.view, s.px - extent, s.px + extent, known);
+        if (!known) return false;
+        float rise = dot(abs(s.slope), extent);
+        float slack = 1e-6 + 1e-5 * rise;  // the taps' own rounding
+        float low = clamp(s.depth - rise - slack, k.nearest, k.farthest);
+        float high = clamp(s.depth + rise + slack, k.nearest, k.farthest);
+        if (s.reversedZ ? bounds.y <= low : bounds.x >= high) return true;
+        if (i == 0u && (s.reversedZ ? bounds.x > high : bounds.y < low)) {
+            visibility = 0.0;
+            return true;
+        }
+        // The region of the source grows toward the light.
+        float seen = fma(k.radius1, s.reversedZ ? bounds.y : bounds.x, k.radius0) + 1.5 * k.texel;
+        seen += 1e-5 * abs(seen) + 1e-6 * (abs(k.radius0) + abs(k.radius1));
+        if (!(seen < needed)) return false;
+        needed = max(seen, 0.0);
+    }
+    return false;
+}
+
 float searchRadius(uint tap, float reach) {
     precise float share = (float(tap) + 0.5) * (1.0 / float(kPcssSearchTaps));
     precise float radius = share * share * reach;
@@ -210,8 +241,12 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visi
     vec4 stored;
     vec2 f;
     if (!mayLeave(s, k, reach)) {
+        float needed;
+        if (knownByBounds(s, k, reach, needed, visibility)) return -1.0;
         for (uint i = 0u; i < kPcssSearchTaps; ++i) {
             float radius = searchRadius(i, reach);
+            // Beyond, there is no blocker; and not all texels occlude.
+            if (radius > needed && found.occluding != 4.0 * float(i)) break;
             precise vec2 px = s.px + tapOffset(k, direction, radius);
             vec4 lit = tapTexels(s, k, px, stored, f);
             countBlockers(k, radius, lit, stored, found);

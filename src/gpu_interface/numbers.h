@@ -83,6 +83,13 @@ GNOMON_CONSTANT GNOMON_UINT kMaxPcfRadius = 3u;
 GNOMON_CONSTANT GNOMON_UINT kMinShadowViewSizePx = 2u * kMaxPcfRadius + 2u;
 // Texels of a cascade's border that no receiver uses: what a bilinear tap and the snapping to texels may need.
 GNOMON_CONSTANT GNOMON_UINT kCascadeMarginPx = 4u;
+// Shadow bounds: blocks of the finest level; levels, each twice as wide; a cell is one block of the coarsest.
+GNOMON_CONSTANT GNOMON_UINT kShadowBoundsBlockPx = 16u;
+GNOMON_CONSTANT GNOMON_UINT kShadowBoundsLevels = 5u;
+GNOMON_CONSTANT GNOMON_UINT kShadowBoundsCellPx = kShadowBoundsBlockPx << (kShadowBoundsLevels - 1u);
+GNOMON_CONSTANT GNOMON_UINT kShadowBoundsCellBlocks = 1u << (kShadowBoundsLevels - 1u);
+// 256 + 64 + 16 + 4 + 1 blocks of a cell, rounded up: 8 bytes each, 2.8 MB for an atlas of 8192x8192.
+GNOMON_CONSTANT GNOMON_UINT kShadowBoundsCellEntries = 344u;
 GNOMON_CONSTANT GNOMON_UINT kMaxPcssTaps = 64u;
 // A penumbra is never wider than this radius in texels; what a source asks for beyond is cut.
 GNOMON_CONSTANT GNOMON_UINT kMaxPcssRadiusPx = 48u;
@@ -156,7 +163,9 @@ GNOMON_CONSTANT GNOMON_UINT kReceiversBindingCount = 4u;
 GNOMON_CONSTANT GNOMON_UINT kBindShadowViews = 0u;
 GNOMON_CONSTANT GNOMON_UINT kBindShadowAtlas0 = 1u;  // and the next kMaxShadowAtlases - 1
 GNOMON_CONSTANT GNOMON_UINT kBindShadowSampler = kBindShadowAtlas0 + kMaxShadowAtlases;  // nearest, clamped
-GNOMON_CONSTANT GNOMON_UINT kShadowmapsBindingCount = kBindShadowSampler + 1u;
+GNOMON_CONSTANT GNOMON_UINT kBindShadowBounds = kBindShadowSampler + 1u;
+GNOMON_CONSTANT GNOMON_UINT kBindShadowBoundsCells = kBindShadowBounds + 1u;
+GNOMON_CONSTANT GNOMON_UINT kShadowmapsBindingCount = kBindShadowBoundsCells + 1u;
 
 #ifdef __cplusplus
 }  // namespace gnomon::gpu

@@ -6,6 +6,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 #include "gpu_interface/numbers.h"
+#include "gpu_interface/packing.h"
 #include "gpu_interface/structs.h"
 
 #ifndef GNOMON_SHADOWMAPS_SET
@@ -24,5 +25,22 @@ layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowAtlas0 + 1) uniform tex
 layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowAtlas0 + 2) uniform texture2DArray shadowAtlas2;
 layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowAtlas0 + 3) uniform texture2DArray shadowAtlas3;
 layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowSampler) uniform sampler shadowSampler;
+// Least and greatest device depth of blocks of texels: see shadow_bounds/shadow_bounds.comp.
+#ifdef GNOMON_SHADOW_BOUNDS_ACCESS
+layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowBounds, std430) restrict writeonly buffer ShadowBoundsBlock {
+    vec2 shadowBounds[];
+};
+layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowBoundsCells, std430) restrict readonly buffer CellsBlock {
+    GpuShadowBoundsCell shadowBoundsCells[];
+};
+#else
+layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowBounds, std430) restrict readonly buffer ShadowBoundsBlock {
+    vec2 shadowBounds[];
+};
+#endif
+
+uint shadowBoundsIndex(uint first, uint row, uint blocks, uint level, uvec2 block) {
+    return first + shadowBoundsLevelOffset(blocks, level) + block.y * (row >> level) + block.x;
+}
 
 #endif

@@ -62,6 +62,22 @@ struct GpuShadowView {
     uint atlasAndLayer;     // atlas in the low 8 bits, layer above
     vec2 pxPerMetre;        // texels per metre at linear depth 1 m (perspective) or anywhere (orthographic)
     vec2 atlasPerTexel;     // 1 / atlas width, 1 / atlas height
+    uint boundsFirst;       // shadow bounds: entry of the first block of the atlas layer,
+    uint boundsRow;         // blocks of the finest level in a row,
+    uint boundsBlocks;      // and in all; 0: the view has no bounds
+    uint reserved;
+};
+
+// A cell of the shadow bounds to be made this frame.
+struct GpuShadowBoundsCell {
+    uint atlasAndLayer;
+    uint cellX;  // in the atlas
+    uint cellY;
+    uint first;  // as in GpuShadowView
+    uint row;
+    uint blocks;
+    float atlasPerTexelX;
+    float atlasPerTexelY;
 };
 
 // Constants of one frame and view.
@@ -107,7 +123,8 @@ struct GpuEvaluateHead {
 
 #ifdef __cplusplus
 static_assert(sizeof(GpuLight) == 96);
-static_assert(sizeof(GpuShadowView) == 128);
+static_assert(sizeof(GpuShadowView) == 144);
+static_assert(sizeof(GpuShadowBoundsCell) == 32);
 static_assert(sizeof(GpuFrame) == 13 * 16);
 static_assert(sizeof(GpuCounters) == 48);
 static_assert(sizeof(GpuEvaluateHead) == 16);

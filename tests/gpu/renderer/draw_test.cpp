@@ -243,7 +243,7 @@ TEST_F(DrawTest, ShadowAtlasHoldsLinearDepthAndCaches) {
         lights[1].rangeMetres = 8.0f;
         ShadowPlanCamera camera;
         camera.position = {0.0, 4.0, 0.0};
-        const ShadowPlan plan = planner.plan(lights, camera, {});
+        ShadowPlan plan = planner.plan(lights, camera, {});
         ASSERT_EQ(plan.views.size(), 7u);
         GpuTimer timer(device, 1);
         auto draw = [&] {
@@ -252,7 +252,8 @@ TEST_F(DrawTest, ShadowAtlasHoldsLinearDepthAndCaches) {
                 timer.beginFrame(commands, 1);
                 const GpuScope scope(&timer, commands, "shadow atlas");
                 gpuScene.recordTransforms(commands, {});
-                statistics = atlas.record(commands, gpuScene, lights, plan);
+                atlas.prepare(gpuScene, lights, plan);
+            statistics = atlas.record(commands, gpuScene);
             });
             return statistics;
         };

@@ -114,7 +114,8 @@ struct Rig {
         ShadowAtlasStatistics statistics;
         device.submitAndWait([&](VkCommandBuffer commands) {
             gpuScene.recordTransforms(commands, {});
-            statistics = atlas.record(commands, gpuScene, lights, plan);
+            atlas.prepare(gpuScene, lights, plan);
+            statistics = atlas.record(commands, gpuScene);
         });
         EXPECT_EQ(statistics.viewsDrawn + statistics.viewsCached, plan.views.size());
         EXPECT_EQ(statistics.viewsDrawn, statistics.drawnViews.size());

@@ -1,0 +1,45 @@
+#pragma once
+// Which cells of the shadow bounds must be made this frame, and where in the buffer an atlas' bounds lie. Pure CPU.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gnomon/tiled_shadows.h"
+#include "gpu_interface/numbers.h"
+#include "gpu_interface/structs.h"
+
+namespace gnomon {
+
+// Cells of 256x256 texels that hold `texels`, at most; a capacity.
+std::uint32_t shadowBoundsCellsFor(std::uint64_t texels) noexcept;
+// Bytes of the bounds of so many cells, all levels.
+std::uint64_t shadowBoundsBytes(std::uint32_t cells) noexcept;
+
+// Remembers which cells hold bounds of what the atlases hold. Not thread safe.
+class ShadowBoundsCells {
+public:
+    // Takes memory once. Throws std::bad_alloc.
+    void create(std::uint32_t capacity);
+
+    // Lists the cells to be made: those of changed views, and those never made yet. Sets the views' place in the
+    // buffer; no bounds where the atlases are larger than the capacity. `views` and `gpuViews` are parallel; `out` has
+    // room for the capacity. Returns how many.
+    std::uint32_t list(std::span<const ShadowView> views, std::span<const ShadowAtlas> atlases,
+                       gpu::GpuShadowView* gpuViews, gpu::GpuShadowBoundsCell* out) noexcept;
+
+private:
+    struct Grid {
+        std::uint32_t columns = 0, rows = 0;  // cells of one layer
+        std::uint32_t firstCell = 0;          // of the first layer
+    };
+    bool layOut(std::span<const ShadowAtlas> atlases) noexcept;
+
+    std::uint32_t capacity_ = 0;
+    Grid grids_[gpu::kMaxShadowAtlases];
+    ShadowAtlas atlases_[gpu::kMaxShadowAtlases];
+    std::uint32_t atlasCount_ = 0;
+    std::vector<std::uint8_t> state_;  // per cell: 0 never made, 1 made, 2 listed in this frame
+};
+
+}  // namespace gnomon

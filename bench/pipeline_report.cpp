@@ -152,6 +152,7 @@ std::unique_ptr<Context> makeContext(const Device& device, const Provider& provi
     desc.subgroupSize = lanes;
     desc.filter = provider.filter;
     desc.pcfRadius = provider.pcfRadius;
+    desc.maxShadowAtlases = 1;  // as the reference renderer has
     std::unique_ptr<Context> context;
     const Result made = Context::create(desc, context);
     if (!made) throw GpuError(made.message());

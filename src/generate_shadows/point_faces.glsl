@@ -1,0 +1,48 @@
+// Taps of a soft shadow that leave their face of a point light. Included by pcss.glsl, which has the kernel.
+
+bool leavesFace(ShadowPoint s, PcssKernel k, vec2 px) {
+    return k.cube && (any(lessThan(px, s.rectMin + 1.0)) || any(greaterThan(px, s.rectMax - 1.0)));
+}
+
+// Row of a view's matrix without its translation.
+vec3 viewRow(uint view, uint row) {
+    return vec3(shadowViews[view].clipFromWorld[0][row], shadowViews[view].clipFromWorld[1][row],
+                shadowViews[view].clipFromWorld[2][row]);
+}
+
+// A tap beyond the border of a point light's face looks at the face that its direction meets. Returns 1 if lit;
+// `stored` is what is stored there, as a device depth of the receiver's own view. Views are read field by field: two
+// whole ones at once would cost every caller nine registers (docs/register-pressure.md).
+float otherFace(GpuLight light, ShadowPoint s, PcssKernel k, vec2 px, out float stored) {
+    uint own = s.view;
+    precise vec2 ndc = (px - shadowViews[own].pxFromNdcOffset) / shadowViews[own].pxFromNdcScale;
+    vec3 x = viewRow(own, 0u);
+    vec3 y = viewRow(own, 1u);
+    precise vec3 direction = viewRow(own, 3u) + x * (ndc.x / dot(x, x)) + y * (ndc.y / dot(y, y));
+    precise vec2 away = px - s.px;
+    precise float planeDepth = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
+    float depth = clamp(planeDepth, k.nearest, k.farthest);
+    precise float linear = shadowViews[own].depthFromLinearB / (depth - shadowViews[own].depthFromLinearA);
+
+    uint other = light.shadowView + cubeFace(direction);
+    precise vec3 clip = shadowViews[other].clipFromWorld[0].xyw * direction.x +
+                        shadowViews[other].clipFromWorld[1].xyw * direction.y +
+                        shadowViews[other].clipFromWorld[2].xyw * direction.z;
+    precise vec2 otherPx =
+        clip.xy / clip.z * shadowViews[other].pxFromNdcScale + shadowViews[other].pxFromNdcOffset;
+    ivec2 texel = ivec2(clamp(floor(otherPx), shadowViews[other].rectMinPx, shadowViews[other].rectMaxPx - 1.0));
+    uint atlasAndLayer = shadowViews[other].atlasAndLayer;
+    float there = fetchAtlas(atlasAndLayer & 0xFFu, float(atlasAndLayer >> 8u), texel);
+    bool reversed = (shadowViews[other].flags & kShadowViewReversedZBit) != 0u;
+    float otherA = shadowViews[other].depthFromLinearA;
+    float otherB = shadowViews[other].depthFromLinearB;
+    // No finite depth: as far as the view sees.
+    bool finite = linear > 0.0 && linear < 1e15;
+    precise float receiver = otherA + otherB / (linear * clip.z);
+    if (!finite) receiver = reversed ? 0.0 : 1.0;
+    receiver = clamp(receiver, 0.0, 1.0);
+    precise float inverse = (there - otherA) / otherB * clip.z;  // 1 / own linear depth
+    precise float asOwn = shadowViews[own].depthFromLinearA + shadowViews[own].depthFromLinearB * inverse;
+    stored = asOwn;
+    return (reversed ? there <= receiver : there >= receiver) ? 1.0 : 0.0;
+}

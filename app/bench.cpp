@@ -129,7 +129,7 @@ void addBenchCommand(CLI::App& app, Work& chosen) {
         ->check(CLI::Range(1, 100'000))
         ->capture_default_str();
     command->add_option("--fps", options->framesPerSecond, "Frames per second of the animations' time; 0: they stand")
-        ->check(CLI::Range(0.0, 1e6))
+        ->check(numberWithin(0.0, 1e6))
         ->capture_default_str();
     command->add_option("--variants", options->variants, "Some of deferred,inline,off")
         ->delimiter(',')

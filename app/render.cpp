@@ -123,7 +123,7 @@ void addRenderCommand(CLI::App& app, Work& chosen) {
         ->check(CLI::Range(1, 100'000))
         ->capture_default_str();
     command->add_option("--fps", options->framesPerSecond, "Frames per second of the animations' time")
-        ->check(CLI::Range(1e-3, 1e6))
+        ->check(numberWithin(1e-3, 1e6))
         ->capture_default_str();
     command->add_flag("--sequence", options->sequence, "Write every frame, as NAME_0000.png and so on");
     command->add_option("--exposure", options->exposure, "EV100; without it the scene's own, or from the picture");

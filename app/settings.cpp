@@ -54,13 +54,25 @@ void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& hei
 
 }  // namespace
 
+CLI::Validator numberWithin(double low, double high) {
+    const std::string range = fmt::format("FLOAT in [{:g} - {:g}]", low, high);
+    return {[low, high](const std::string& text) {
+                double value = 0.0;
+                const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+                const bool good =
+                    error == std::errc() && end == text.data() + text.size() && low <= value && value <= high;
+                return good ? std::string() : fmt::format("'{}' is no number from {:g} to {:g}", text, low, high);
+            },
+            range};
+}
+
 void addSettings(CLI::App& command, Settings& s) {
     command.add_option("scene", s.scene, "A built-in scene or a .gltf or .glb file")->capture_default_str();
     command.add_option("--size", s.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
     command.add_option("--camera", s.camera, "A camera's name, #index, or eye:target[:degrees] as in 0,3,8:0,1,0:60")
         ->capture_default_str();
     command.add_option("--time", s.time, "Seconds into the scene's animations, of the first frame")
-        ->check(CLI::Range(-1e9, 1e9))
+        ->check(numberWithin(-1e9, 1e9))
         ->capture_default_str();
     command.add_option("--animation", s.animation, "The animation to play: its name, #index, default or none")
         ->capture_default_str();

@@ -40,6 +40,9 @@ struct Settings {
 
 void addSettings(CLI::App& command, Settings& settings);
 
+/// As CLI::Range, which lets NaN pass.
+CLI::Validator numberWithin(double low, double high);
+
 /// Animation time of a frame, counted from 0; without frames per second time stands still.
 inline double frameTime(double firstSeconds, std::uint64_t frame, double framesPerSecond) {
     return framesPerSecond > 0.0 ? firstSeconds + static_cast<double>(frame) / framesPerSecond : firstSeconds;

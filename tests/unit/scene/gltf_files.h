@@ -106,6 +106,30 @@ inline void expectSound(const Scene& scene) {
     for (const Instance& instance : scene.instances) {
         ASSERT_LT(instance.mesh, scene.meshes.size());
         EXPECT_FALSE(scene.meshes[instance.mesh].primitives.empty());
+        ASSERT_TRUE(instance.node == kNone || instance.node < scene.nodes.size());
+        if (instance.skin == kNone) continue;
+        ASSERT_LT(instance.skin, scene.skins.size());
+        for (const Primitive& p : scene.meshes[instance.mesh].primitives) {
+            ASSERT_FALSE(p.joints.empty());
+            for (const glm::u16vec4& j : p.joints)
+                for (int c = 0; c < 4; ++c) ASSERT_LT(j[c], scene.skins[instance.skin].joints.size());
+        }
+    }
+    for (std::size_t n = 0; n < scene.nodes.size(); ++n)
+        ASSERT_TRUE(scene.nodes[n].parent == kNone || scene.nodes[n].parent < n);
+    for (const Skin& skin : scene.skins) {
+        ASSERT_FALSE(skin.joints.empty());
+        ASSERT_EQ(skin.joints.size(), skin.jointFromMesh.size());
+        for (std::uint32_t joint : skin.joints) ASSERT_LT(joint, scene.nodes.size());
+    }
+    for (const Animation& animation : scene.animations) {
+        ASSERT_FALSE(animation.channels.empty());
+        for (const AnimationChannel& c : animation.channels) {
+            ASSERT_LT(c.node, scene.nodes.size());
+            ASSERT_FALSE(c.times.empty());
+            ASSERT_LE(c.times.back(), animation.durationSeconds);
+            ASSERT_EQ(c.values.size() % c.times.size(), 0u);
+        }
     }
     for (const Mesh& mesh : scene.meshes)
         for (const Primitive& p : mesh.primitives) {
@@ -118,6 +142,12 @@ inline void expectSound(const Scene& scene) {
             for (std::size_t size :
                  {p.normals.size(), p.tangents.size(), p.texcoords[0].size(), p.texcoords[1].size(), p.colours.size()})
                 ASSERT_TRUE(size == 0 || size == count);
+            ASSERT_TRUE(p.joints.size() == p.weights.size() && (p.joints.empty() || p.joints.size() == count));
+            for (const MorphTarget& t : p.targets)
+                for (std::size_t size : {t.positions.size(), t.normals.size(), t.tangents.size()})
+                    ASSERT_TRUE(size == 0 || size == count);
+            ASSERT_EQ(p.targets.size(), mesh.primitives.front().targets.size());
+            ASSERT_TRUE(mesh.weights.empty() || mesh.weights.size() == p.targets.size());
             for (const glm::vec3& n : p.normals) ASSERT_NEAR(glm::length(n), 1.0f, 1.0e-3f);
         }
     for (const Material& m : scene.materials)

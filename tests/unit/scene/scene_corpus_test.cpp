@@ -5,6 +5,8 @@
 #include <cstdlib>
 
 #include "gltf_files.h"
+#include "renderer/scene/play_animation.h"
+#include "renderer/scene/pose.h"
 
 using namespace scene_tests;
 
@@ -19,14 +21,15 @@ struct Known {
     const char* file;
     std::uint64_t triangles;
     std::size_t lights;
+    std::size_t animations = 0;
 };
 
 constexpr Known kScenes[] = {
     {"sponza/sponza.glb", 262267, 0},
     {"small_house/small_house.glb", 145844, 8},
-    {"sophia/sophia.glb", 19086, 0},
-    {"kaykit_knight/Knight.glb", 6952, 0},
-    {"cesium_man/CesiumMan.glb", 4672, 0},
+    {"sophia/sophia.glb", 19086, 0, 8},
+    {"kaykit_knight/Knight.glb", 6952, 0, 76},
+    {"cesium_man/CesiumMan.glb", 4672, 0, 1},
     {"dutch_ship/dutch_ship_medium_1k.gltf", 69162, 0},
     {"jungle/jungle.glb", 18515, 0},
     {"japanese_garden/japanese_garden.glb", 21883, 0},
@@ -41,6 +44,15 @@ constexpr Known kScenes[] = {
     {"draco_test/red_city.draco.glb", 175648, 0},
 };
 
+// Figures keep together whatever they play: no vertex leaves them.
+void expectWhole(Scene& scene, const std::string& file) {
+    const float radius = worldBounds(scene).radius();
+    for (std::size_t a = 0; a < scene.animations.size(); ++a) {
+        playCompatible(scene, a);
+        EXPECT_LT(animatedBounds(scene, 7).radius(), 6.0f * radius) << file << ", " << scene.animations[a].name;
+    }
+}
+
 }  // namespace
 
 TEST(SceneCorpus, RealScenes) {
@@ -52,6 +64,8 @@ TEST(SceneCorpus, RealScenes) {
         expectSound(scene);
         EXPECT_EQ(triangleCount(scene), known.triangles) << known.file;
         EXPECT_EQ(scene.lights.size(), known.lights) << known.file;
+        EXPECT_EQ(scene.animations.size(), known.animations) << known.file;
+        expectWhole(scene, known.file);
     }
 }
 

@@ -150,7 +150,7 @@ static Scene makeCourtyard(const char* name, courtyard::Hour hour) {
     b.camera("arcade", {-12.2f, 1.75f, -10.7f}, {2.0f, 1.55f, -9.3f}, 0.95f);
     b.camera("fountain", {4.6f, 1.45f, 4.4f}, {-0.6f, 1.75f, -1.2f}, 0.9f);
     if (hour == Hour::Day) {
-        b.scene.skyColour = {5.0f, 7.2f, 11.4f};
+        b.scene.skyColour = {5.6f, 8.2f, 12.8f};
         b.scene.groundColour = {4.2f, 3.1f, 2.1f};
         b.scene.exposureEv100 = 4.35f;
     } else {

@@ -218,9 +218,9 @@ void addOtherLights(Parts& parts) {
     SceneLight sky;
     sky.name = day ? "sun" : "moon";
     sky.kind = LightKind::Directional;
-    sky.direction = glm::normalize(day ? glm::vec3(-0.62f, -0.65f, -0.46f) : glm::vec3(0.45f, -0.8f, -0.35f));
+    sky.direction = glm::normalize(day ? glm::vec3(0.68f, -0.62f, -0.40f) : glm::vec3(0.45f, -0.8f, -0.35f));
     sky.colour = day ? glm::vec3(1.0f, 0.77f, 0.50f) : glm::vec3(0.55f, 0.70f, 1.0f);
-    sky.intensity = day ? 420.0f : 0.55f;  // lux
+    sky.intensity = day ? 480.0f : 0.55f;  // lux
     sky.sourceRadius = 0.00465f;
     parts.builder.scene.lights.push_back(sky);
 }

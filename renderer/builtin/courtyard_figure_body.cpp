@@ -110,7 +110,7 @@ void addGown(Garment& cloth, bool longRobe) {
         {0.93f, 0.172f, 0.138f},          {1.06f, 0.146f, 0.117f},          {1.20f, 0.162f, 0.127f, 0.01f},
         {1.33f, 0.190f, 0.130f, 0.01f},   {1.41f, 0.194f, 0.112f},          {1.45f, 0.152f, 0.087f},
         {1.482f, 0.082f, 0.068f},         {1.50f, 0.056f, 0.056f}};
-    longRobe ? upright(cloth.shape, robe, 54) : upright(cloth.shape, tunic, 54);
+    longRobe ? upright(cloth.shape, robe, 54, 0.0f, 5) : upright(cloth.shape, tunic, 54, 0.0f, 4);
     cloth.bind([=](const glm::vec3& p) { return followSkirt(p, longRobe ? 0.5f : 0.8f); });
 }
 
@@ -255,7 +255,7 @@ void addBeltAndShawl(Garment& second, bool shawl) {
                             {1.30f, 0.262f, 0.152f, -0.004f}, {1.39f, 0.240f, 0.128f},
                             {1.44f, 0.19f, 0.102f},           {1.475f, 0.10f, 0.075f},
                             {1.492f, 0.068f, 0.064f}};
-    upright(second.shape, cape, 24);
+    upright(second.shape, cape, 32, 0.0f, 4);
     second.bind([](const glm::vec3& p) {  // its ends swing with the arms, a little
         const float left = 0.45f * ramp(0.12f, 0.28f, p.x) * ramp(1.44f, 1.30f, p.y);
         const float right = 0.45f * ramp(0.12f, 0.28f, -p.x) * ramp(1.44f, 1.30f, p.y);

@@ -21,8 +21,9 @@ SceneLight& addPoint(Parts& parts, const char* name, const glm::vec3& at, const 
     light.name = name;
     light.position = at;
     light.colour = colour;
-    light.intensity = parts.hour == Hour::Day ? 2.5f * candela : candela;
-    light.rangeMetres = parts.hour == Hour::Bench ? kBenchReach * range : range;
+    const bool bench = parts.hour == Hour::Bench;
+    light.intensity = candela * (parts.hour == Hour::Day ? 2.5f : bench ? 1.7f : 1.0f);
+    light.rangeMetres = bench ? kBenchReach * range : range;
     light.sourceRadius = sourceRadius;
     parts.builder.scene.lights.push_back(light);
     return parts.builder.scene.lights.back();

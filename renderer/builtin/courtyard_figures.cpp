@@ -88,7 +88,7 @@ void addLanternBearer(Parts& parts) {
                            {-7.4f, -10.2f},
                            {-8.9f, -10.25f},
                            {-9.3f, -10.60f}});
-    Look look{m.wear[0], m.wear[5], m.skin[1], m.hair[1], m.leather, m.straw};
+    Look look{m.wear[0], m.wear[2], m.skin[1], m.hair[1], m.leather, m.straw};
     look.head = Look::Head::Hood;
     look.shawl = true;
     const std::uint32_t first = addFigure(parts, "lantern bearer", look, 132, [&](float at) {

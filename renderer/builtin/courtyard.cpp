@@ -85,7 +85,7 @@ void makeLivingMaterials(Parts& parts) {
         m.paper[i] = plain(b, "paper", paper[i], 0.9f);
         Material& lit = b.scene.materials[m.paper[i]];
         lit.doubleSided = true;
-        lit.emissive = (parts.hour == Hour::Day ? 45.0f : 1.9f) * paper[i] * paper[i];
+        lit.emissive = (parts.hour == Hour::Day ? 26.0f : 1.9f) * paper[i] * paper[i];
         lit.emissiveTexture.image = glow;
         lit.emissiveTexture.uvTransform = glm::mat2(1.0f, 0.0f, 0.0f, 2.0f);
         m.skin[i] = plain(b, "skin", skin[i], 0.55f);
@@ -149,14 +149,15 @@ static Scene makeCourtyard(const char* name, courtyard::Hour hour) {
     b.camera("overview", {-11.7f, 5.3f, 5.6f}, {1.2f, 1.75f, -1.5f}, 0.93f);
     b.camera("arcade", {-12.2f, 1.75f, -10.7f}, {2.0f, 1.55f, -9.3f}, 0.95f);
     b.camera("fountain", {4.6f, 1.45f, 4.4f}, {-0.6f, 1.75f, -1.2f}, 0.9f);
+    b.camera("gallery", {-11.2f, 6.15f, -10.9f}, {2.5f, 2.6f, 1.2f}, 0.95f);
     if (hour == Hour::Day) {
-        b.scene.skyColour = {5.0f, 7.2f, 11.4f};
-        b.scene.groundColour = {4.2f, 3.1f, 2.1f};
+        b.scene.skyColour = {7.6f, 11.0f, 17.0f};
+        b.scene.groundColour = {3.0f, 2.3f, 1.6f};
         b.scene.exposureEv100 = 4.35f;
     } else {
         b.scene.skyColour = {0.030f, 0.048f, 0.105f};
         b.scene.groundColour = {0.022f, 0.020f, 0.022f};
-        b.scene.exposureEv100 = 0.1f;
+        b.scene.exposureEv100 = -0.2f;
     }
     return std::move(b.scene);
 }

@@ -91,10 +91,12 @@ Influence followTorso(const glm::vec3& p) {
     return influences({{kChest, chest}, {kHips, 1.0f - chest}});
 }
 
-// Below the hips cloth follows both legs, by half (`most`), the left of it rather the left one.
-Influence followSkirt(const glm::vec3& p, float most) {
+// Below the hips cloth follows both legs: a gown by half, a tunic nearly all the way; the left of it rather the left
+// one.
+Influence followSkirt(const glm::vec3& p, bool longRobe) {
     if (p.y > 0.97f) return followTorso(p);
-    const float legs = most * ramp(0.97f, 0.62f, p.y), left = ramp(-0.16f, 0.16f, p.x);
+    const float legs = longRobe ? 0.5f * ramp(0.97f, 0.62f, p.y) : 0.95f * ramp(0.97f, 0.76f, p.y);
+    const float width = longRobe ? 0.16f : 0.10f, left = ramp(-width, width, p.x);
     return influences({{kHips, 1.0f - legs}, {kThighL, legs * left}, {kThighR, legs * (1.0f - left)}});
 }
 
@@ -110,8 +112,8 @@ void addGown(Garment& cloth, bool longRobe) {
         {0.93f, 0.172f, 0.138f},          {1.06f, 0.146f, 0.117f},          {1.20f, 0.162f, 0.127f, 0.01f},
         {1.33f, 0.190f, 0.130f, 0.01f},   {1.41f, 0.194f, 0.112f},          {1.45f, 0.152f, 0.087f},
         {1.482f, 0.082f, 0.068f},         {1.50f, 0.056f, 0.056f}};
-    longRobe ? upright(cloth.shape, robe, 54) : upright(cloth.shape, tunic, 54);
-    cloth.bind([=](const glm::vec3& p) { return followSkirt(p, longRobe ? 0.5f : 0.8f); });
+    longRobe ? upright(cloth.shape, robe, 54, 0.0f, 5) : upright(cloth.shape, tunic, 54, 0.0f, 4);
+    cloth.bind([=](const glm::vec3& p) { return followSkirt(p, longRobe); });
 }
 
 void addArms(Garment& cloth, Garment& skin, bool wideSleeves) {
@@ -123,8 +125,8 @@ void addArms(Garment& cloth, Garment& skin, bool wideSleeves) {
                                   {1.05f, 0.045f + 0.6f * w, 0.047f + 0.7f * w},
                                   {1.16f, 0.048f, 0.05f},
                                   {1.28f, 0.053f, 0.056f},
-                                  {1.37f, 0.056f, 0.06f},
-                                  {1.415f, 0.046f, 0.052f},
+                                  {1.37f, 0.051f, 0.056f},
+                                  {1.415f, 0.041f, 0.048f},
                                   {1.442f, 0.02f, 0.024f}};
         upright(cloth.shape, sleeve, 12, x);
         cloth.bind([=](const glm::vec3& p) {
@@ -255,7 +257,7 @@ void addBeltAndShawl(Garment& second, bool shawl) {
                             {1.30f, 0.262f, 0.152f, -0.004f}, {1.39f, 0.240f, 0.128f},
                             {1.44f, 0.19f, 0.102f},           {1.475f, 0.10f, 0.075f},
                             {1.492f, 0.068f, 0.064f}};
-    upright(second.shape, cape, 24);
+    upright(second.shape, cape, 32, 0.0f, 4);
     second.bind([](const glm::vec3& p) {  // its ends swing with the arms, a little
         const float left = 0.45f * ramp(0.12f, 0.28f, p.x) * ramp(1.44f, 1.30f, p.y);
         const float right = 0.45f * ramp(0.12f, 0.28f, -p.x) * ramp(1.44f, 1.30f, p.y);

@@ -158,7 +158,7 @@ void walk(Pose& pose, const Gait& gait, float phase) {
     for (const bool isLeft : {true, false}) {
         const std::uint32_t upper = isLeft ? kUpperArmL : kUpperArmR;
         const float arm = (isLeft ? 1.0f : -1.0f) * gait.armSwing * swing;  // positive: backwards
-        pose.rotation[upper] = glm::angleAxis(isLeft ? 0.10f : -0.10f, glm::vec3(0, 0, 1)) * aboutX(arm);
+        pose.rotation[upper] = glm::angleAxis(isLeft ? 0.17f : -0.17f, glm::vec3(0, 0, 1)) * aboutX(arm);
         pose.rotation[upper + 1] = aboutX(-0.28f - 0.5f * std::max(0.0f, -arm));
     }
 }

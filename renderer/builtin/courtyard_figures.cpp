@@ -88,8 +88,9 @@ void addLanternBearer(Parts& parts) {
                            {-7.4f, -10.2f},
                            {-8.9f, -10.25f},
                            {-9.3f, -10.60f}});
-    Look look{m.wear[0], m.wear[4], m.skin[1], m.hair[1], m.leather, m.straw};
+    Look look{m.wear[0], m.wear[2], m.skin[1], m.hair[1], m.leather, m.straw};
     look.head = Look::Head::Hood;
+    look.shawl = true;
     const std::uint32_t first = addFigure(parts, "lantern bearer", look, 132, [&](float at) {
         Pose pose;
         Gait gait{1.10f, 0.64f, 0.07f, 0.22f, 0.04f};
@@ -282,7 +283,7 @@ void addChild(Parts& parts) {
     addFigure(parts, "child", look, 216, [&](float at) {
         Pose pose;
         Gait gait{2.0f, 0.40f, 0.24f, 0.75f, 0.16f};
-        const float phase = follow(pose, path, at + 0.30f, gait, 0.0f, 0.64f);
+        const float phase = follow(pose, path, at + 0.55f, gait, 0.0f, 0.64f);
         walk(pose, gait, phase);
         return pose;
     });

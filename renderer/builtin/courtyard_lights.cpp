@@ -21,8 +21,9 @@ SceneLight& addPoint(Parts& parts, const char* name, const glm::vec3& at, const 
     light.name = name;
     light.position = at;
     light.colour = colour;
-    light.intensity = parts.hour == Hour::Day ? 2.5f * candela : candela;
-    light.rangeMetres = parts.hour == Hour::Bench ? kBenchReach * range : range;
+    const bool bench = parts.hour == Hour::Bench;
+    light.intensity = candela * (parts.hour == Hour::Day ? 2.5f : bench ? 1.7f : 1.0f);
+    light.rangeMetres = bench ? kBenchReach * range : range;
     light.sourceRadius = sourceRadius;
     parts.builder.scene.lights.push_back(light);
     return parts.builder.scene.lights.back();
@@ -218,9 +219,9 @@ void addOtherLights(Parts& parts) {
     SceneLight sky;
     sky.name = day ? "sun" : "moon";
     sky.kind = LightKind::Directional;
-    sky.direction = glm::normalize(day ? glm::vec3(-0.62f, -0.65f, -0.46f) : glm::vec3(0.45f, -0.8f, -0.35f));
+    sky.direction = glm::normalize(day ? glm::vec3(0.68f, -0.62f, -0.40f) : glm::vec3(0.45f, -0.8f, -0.35f));
     sky.colour = day ? glm::vec3(1.0f, 0.77f, 0.50f) : glm::vec3(0.55f, 0.70f, 1.0f);
-    sky.intensity = day ? 420.0f : 0.55f;  // lux
+    sky.intensity = day ? 480.0f : 0.55f;  // lux
     sky.sourceRadius = 0.00465f;
     parts.builder.scene.lights.push_back(sky);
 }

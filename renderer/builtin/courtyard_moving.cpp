@@ -33,6 +33,24 @@ void addChannel(Scene& scene, AnimationChannel channel) {
     scene.animations.front().channels.push_back(std::move(channel));
 }
 
+// Triangles that skinning folded so far that a vertex' normal leaves their side get vertices of their own.
+void mendNormals(Primitive& p) {
+    for (std::size_t i = 0; i < p.indices.size(); i += 3) {
+        const glm::vec3 a = p.positions[p.indices[i]], b = p.positions[p.indices[i + 1]];
+        const glm::vec3 face = glm::normalize(glm::cross(b - a, p.positions[p.indices[i + 2]] - a));
+        for (std::size_t k = i; k < i + 3; ++k) {
+            const std::uint32_t v = p.indices[k];
+            if (glm::dot(face, p.normals[v]) > 0.25f) continue;
+            p.indices[k] = static_cast<std::uint32_t>(p.positions.size());
+            p.positions.push_back(glm::vec3(p.positions[v]));
+            p.normals.push_back(glm::normalize(face + 0.5f * p.normals[v]));
+            p.texcoords[0].push_back(glm::vec2(p.texcoords[0][v]));
+            p.joints.push_back(glm::u16vec4(p.joints[v]));
+            p.weights.push_back(glm::vec4(p.weights[v]));
+        }
+    }
+}
+
 }  // namespace
 
 std::uint32_t addNode(Scene& scene, std::string name, std::uint32_t parent, const glm::vec3& translation,
@@ -70,6 +88,7 @@ void placeSkinned(SceneBuilder& builder, std::string name, std::vector<Primitive
             p.positions[v] = glm::vec3(blend * glm::vec4(p.positions[v], 1.0f));
             p.normals[v] = glm::normalize(glm::mat3(blend) * p.normals[v]);
         }
+        mendNormals(p);
         for (const std::uint32_t index : p.indices) p.bounds.add(p.positions[index]);
     }
     builder.place(builder.mesh(std::move(name), std::move(primitives)), glm::mat4(1.0f));

@@ -149,8 +149,8 @@ void addSwallows(Parts& parts) {
         };
         const std::uint32_t root = addNode(b.scene, "swallow", kNone, place(0.0f), heading(0.0f));
         placeOn(b, root, bodyMesh);
-        animatePlace(b.scene, root, 96, place);
-        animateTurn(b.scene, root, 96, heading);
+        animatePlace(b.scene, root, 144, place);
+        animateTurn(b.scene, root, 144, heading);
         for (const int right : {0, 1}) {
             const float s = right != 0 ? -1.0f : 1.0f;
             const auto flap = [=](float at) -> glm::quat {  // bursts of beats between glides

@@ -219,7 +219,7 @@ Image paintStarCutouts(std::uint32_t size, const glm::vec3& tint) {
             // An eight-pointed star: two squares, one turned by 45 degrees.
             const float square = std::max(std::abs(px), std::abs(py));
             const float turned = 0.70710678f * (std::abs(px) + std::abs(py));
-            const float star = 0.31f - std::min(square, turned);
+            const float star = 0.235f - std::min(square, turned);
             // Small round holes between the stars.
             const float qx = 0.5f - std::abs(px), qy = 0.5f - std::abs(py);
             const float hole = std::max(0.05f - std::sqrt(qx * qx + py * py), 0.03f - std::sqrt(px * px + qy * qy));

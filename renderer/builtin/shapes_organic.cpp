@@ -37,13 +37,21 @@ void ShapeBuilder::loft(std::span<const Ring> rings, int sides) {
             triangle(a, b + 1, b);
         }
     }
-    std::vector<glm::vec3> start, end;
-    for (int k = 0; k < sides; ++k) {
-        start.push_back(at(0, sides - 1 - k));
-        end.push_back(at(rings.size() - 1, k));
+    // Caps are fans around the middle: a folded ring is no convex polygon.
+    for (const std::size_t i : {std::size_t{0}, rings.size() - 1}) {
+        glm::vec3 out = glm::normalize(glm::cross(rings[i].across, rings[i].forward));
+        if (i == 0) out = -out;
+        const std::uint32_t middle = vertex(rings[i].centre, out, {0.0f, 0.0f});
+        for (int k = 0; k < sides; ++k) {
+            const glm::vec3 p = at(i, k) - rings[i].centre;
+            vertex(at(i, k), out,
+                   {glm::dot(p, glm::normalize(rings[i].across)), glm::dot(p, glm::normalize(rings[i].forward))});
+        }
+        for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(sides); ++k) {
+            const std::uint32_t a = middle + 1 + k, b = middle + 1 + (k + 1) % static_cast<std::uint32_t>(sides);
+            i == 0 ? triangle(middle, b, a) : triangle(middle, a, b);
+        }
     }
-    polygon(start);
-    polygon(end);
 }
 
 void ShapeBuilder::branch(std::span<const glm::vec3> path, std::span<const float> radii, int sides) {

@@ -2,6 +2,7 @@
 
 #include "renderer/builtin/builtin.h"
 #include "renderer/builtin/random.h"
+#include "renderer/builtin/tile_samples.h"
 #include "renderer/builtin/triangle_grid.h"
 
 #include <gtest/gtest.h>
@@ -123,6 +124,30 @@ TEST(ScatterLights, AFlatPlaneGetsItsLightsAbove) {
     const Scene scene = scattered("empty-plane", 100, 1);
     ASSERT_EQ(scene.lights.size(), 100u);
     for (const SceneLight& light : scene.lights) EXPECT_GT(light.position.y, 0.0f);
+}
+
+// The picture's tiles decide: 64 lights and 512 give what was asked for, and the scene's own lamps are gone.
+TEST(ScatterLights, GivesTheDensityPerTileAtEveryCount) {
+    for (const char* name : {"courtyard", "columns"}) {
+        for (const std::uint32_t count : {64u, 512u}) {
+            Scene scene = makeBuiltinScene(name).value();
+            const TileDensity density{3.0f, scene.cameras.front(), 640, 360};
+            scatterLights(scene, count, 1, &density);
+            std::size_t local = 0;
+            for (const SceneLight& light : scene.lights) local += light.kind != LightKind::Directional ? 1 : 0;
+            EXPECT_EQ(local, count) << name;
+            const TriangleGrid grid(scene);
+            EXPECT_NEAR(TileSamples(grid, density).meanShadowed(scene.lights), 3.0f, 0.15f) << name << " " << count;
+            EXPECT_TRUE(scene.notes.empty()) << scene.notes.front();
+        }
+    }
+}
+
+TEST(ScatterLights, SaysWhenNoRangeGivesTheDensity) {
+    Scene scene = makeBuiltinScene("boxes").value();
+    const TileDensity density{20.0f, scene.cameras.front(), 640, 360};
+    scatterLights(scene, 4, 1, &density);
+    EXPECT_EQ(scene.notes.size(), 1u);
 }
 
 }  // namespace

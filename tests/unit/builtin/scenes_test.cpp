@@ -141,20 +141,33 @@ TEST(BuiltinScenes, EveryoneHasADescriptionOfOneLine) {
     }
 }
 
+bool isCourtyard(const std::string& name) {
+    return name.rfind("courtyard", 0) == 0;
+}
+
 TEST(BuiltinScenes, CourtyardKeepsItsSize) {
-    const Scene scene = makeBuiltinScene("courtyard").value();
-    EXPECT_GE(triangles(scene), 60'000u);
-    EXPECT_LE(triangles(scene), 150'000u);
-    std::size_t casting = 0;
-    for (const SceneLight& light : scene.lights) casting += light.casts ? 1 : 0;
-    EXPECT_EQ(casting, 24u);
-    EXPECT_EQ(scene.cameras.front().name, "overview");
-    EXPECT_EQ(scene.cameras.size(), 3u);
+    for (const std::string& name : names()) {
+        if (!isCourtyard(name)) continue;
+        const Scene scene = makeBuiltinScene(name).value();
+        EXPECT_GE(triangles(scene), 200'000u);
+        EXPECT_LE(triangles(scene), 400'000u);
+        int points = 0, spots = 0, directional = 0;
+        for (const SceneLight& light : scene.lights) {
+            EXPECT_TRUE(light.casts) << light.name;
+            ++(light.kind == LightKind::Point ? points : light.kind == LightKind::Spot ? spots : directional);
+        }
+        EXPECT_GE(points, 24) << name;
+        EXPECT_GE(spots, 24) << name;
+        EXPECT_GE(points + spots, 60) << name;
+        EXPECT_EQ(directional, 1) << name;
+        EXPECT_EQ(scene.cameras.front().name, "overview");
+        EXPECT_GE(scene.cameras.size(), 3u);
+    }
 }
 
 TEST(BuiltinScenes, SmallScenesAreSmall) {
     for (const std::string& name : names()) {
-        if (name == "courtyard") continue;
+        if (isCourtyard(name)) continue;
         EXPECT_LE(triangles(makeBuiltinScene(name).value()), 15'000u) << name;
     }
 }

@@ -47,9 +47,8 @@ std::vector<MemberLayout> gpuShadowView() {
             MEMBER(GpuShadowView, pxFromNdcOffset),  MEMBER(GpuShadowView, rectMinPx),
             MEMBER(GpuShadowView, rectMaxPx),        MEMBER(GpuShadowView, depthFromLinearA),
             MEMBER(GpuShadowView, depthFromLinearB), MEMBER(GpuShadowView, flags),
-            MEMBER(GpuShadowView, atlasAndLayer),    MEMBER(GpuShadowView, texelMetres),
-            MEMBER(GpuShadowView, atlasPerTexelX),   MEMBER(GpuShadowView, atlasPerTexelY),
-            MEMBER(GpuShadowView, reserved)};
+            MEMBER(GpuShadowView, atlasAndLayer),    MEMBER(GpuShadowView, pxPerMetre),
+            MEMBER(GpuShadowView, atlasPerTexel)};
 }
 
 std::vector<MemberLayout> gpuFrame() {
@@ -312,7 +311,7 @@ TEST(ShaderInterface, ConstantsAreKnown) {
     std::unique_ptr<Context> context;
     ASSERT_TRUE(Context::create(vulkan.desc(), context));
     const std::size_t given = context->specializationValues().size();
-    EXPECT_EQ(given, kSpecHostDepthPyramid + 1u);
+    EXPECT_EQ(given, kSpecVisibilityBits + 1u);
     for (const ShaderLayout& shader : libraryShaders()) {
         for (std::uint32_t id : shader.constantIds) EXPECT_LT(id, given) << shader.name;
     }
@@ -333,14 +332,19 @@ TEST(ShaderInterface, PipelinesGetTheConstants) {
     desc.listReservation = ListReservation::Accurate;
     desc.pcfRadius = 3;
     desc.hostDepthPyramid = true;
+    desc.pcss = {3, 5};
+    desc.visibilityBits = 4;
     std::unique_ptr<Context> context;
     ASSERT_TRUE(Context::create(desc, context));
-    std::vector<std::uint32_t> expected(5);
+    std::vector<std::uint32_t> expected(8);
     expected[kSpecSubgroupSize] = 64;
     expected[kSpecProvider] = kProviderHard;
     expected[kSpecListReservation] = kReserveAccurate;
     expected[kSpecPcfRadius] = 3;
     expected[kSpecHostDepthPyramid] = 1;
+    expected[kSpecPcssSearchTaps] = 3;
+    expected[kSpecPcssFilterTaps] = 5;
+    expected[kSpecVisibilityBits] = 4;
     EXPECT_TRUE(std::ranges::equal(context->specializationValues(), expected));
     ASSERT_EQ(vulkan.pipelines.size(), 5u);
     for (const FakeVulkan::Pipeline& pipeline : vulkan.pipelines) {

@@ -41,6 +41,8 @@ TEST_P(MisuseTest, ContextDesc) {
         {"taps", [](ContextDesc& d) { d.pcss.searchTaps = 65; }},
         {"taps", [](ContextDesc& d) { d.pcss.filterTaps = 0; }},
         {"taps", [](ContextDesc& d) { d.pcss.filterTaps = 65; }},
+        {"maxShadowAtlases", [](ContextDesc& d) { d.maxShadowAtlases = 0; }},
+        {"maxShadowAtlases", [](ContextDesc& d) { d.maxShadowAtlases = 5; }},
         {"visibilityBits", [](ContextDesc& d) { d.visibilityBits = 0; }},
         {"visibilityBits", [](ContextDesc& d) { d.visibilityBits = 5; }},
         {"fixedListEntriesPerTile", [](ContextDesc& d) { d.listReservation = ListReservation::Fixed; }},

@@ -311,12 +311,14 @@ TEST(ShaderInterface, ConstantsAreKnown) {
     std::unique_ptr<Context> context;
     ASSERT_TRUE(Context::create(vulkan.desc(), context));
     const std::size_t given = context->specializationValues().size();
-    EXPECT_EQ(given, kSpecVisibilityBits + 1u);
+    EXPECT_EQ(given, kSpecShadowAtlases + 1u);
+    const std::uint32_t ofTheRenderer = kSpecFirstFree + 2;
     for (const ShaderLayout& shader : libraryShaders()) {
         for (std::uint32_t id : shader.constantIds) EXPECT_LT(id, given) << shader.name;
     }
     for (const ShaderLayout& shader : lightingShaders()) {
-        for (std::uint32_t id : shader.constantIds) EXPECT_TRUE(id < given || id == kSpecFirstFree) << shader.name << " " << id;
+        for (std::uint32_t id : shader.constantIds)
+            EXPECT_TRUE(id < given || (id >= kSpecFirstFree && id < ofTheRenderer)) << shader.name << " " << id;
     }
     for (const ShaderLayout& shader : libraryAndLighting()) {
         EXPECT_EQ(std::ranges::count(shader.constantIds, kSpecSubgroupSize), 1) << shader.name;
@@ -334,9 +336,10 @@ TEST(ShaderInterface, PipelinesGetTheConstants) {
     desc.hostDepthPyramid = true;
     desc.pcss = {3, 5};
     desc.visibilityBits = 4;
+    desc.maxShadowAtlases = 2;
     std::unique_ptr<Context> context;
     ASSERT_TRUE(Context::create(desc, context));
-    std::vector<std::uint32_t> expected(8);
+    std::vector<std::uint32_t> expected(9);
     expected[kSpecSubgroupSize] = 64;
     expected[kSpecProvider] = kProviderHard;
     expected[kSpecListReservation] = kReserveAccurate;
@@ -345,6 +348,7 @@ TEST(ShaderInterface, PipelinesGetTheConstants) {
     expected[kSpecPcssSearchTaps] = 3;
     expected[kSpecPcssFilterTaps] = 5;
     expected[kSpecVisibilityBits] = 4;
+    expected[kSpecShadowAtlases] = 2;
     EXPECT_TRUE(std::ranges::equal(context->specializationValues(), expected));
     ASSERT_EQ(vulkan.pipelines.size(), 5u);
     for (const FakeVulkan::Pipeline& pipeline : vulkan.pipelines) {

@@ -59,7 +59,7 @@ Verdict facesLight(const LightModel& light, const Pixel& pixel) {
 Verdict reaches(const LightModel& light, const Pixel& pixel, bool dropFacedAway) {
     const Verdict influence = inInfluence(light, pixel);
     // Where a shadow fades, a face that looks away still gets some light.
-    const bool maySkip = dropFacedAway && light.casts && light.shadowFade >= 1.0 && !pixel.subsurface;
+    const bool maySkip = dropFacedAway && light.casts && !light.shadowFades && !pixel.subsurface;
     if (influence == Verdict::Never || !maySkip) return influence;
     return both(influence, facesLight(light, pixel));
 }

@@ -27,13 +27,13 @@ std::vector<Voter> voters(const PixelGrid& grid, std::uint32_t tileX, std::uint3
 struct Unanimity {
     bool mayBeDark = true, mustBeDark = true, mayBeLit = true, mustBeLit = true;
 };
-Unanimity unanimity(const std::vector<Voter>& all) {
+Unanimity unanimity(const std::vector<Voter>& all, int levels) {
     Unanimity result;
     for (const Voter& voter : all) {
         if (voter.surely && voter.stored.min > 0) result.mayBeDark = false;
-        if (voter.surely && voter.stored.max < 255) result.mayBeLit = false;
+        if (voter.surely && voter.stored.max < levels) result.mayBeLit = false;
         if (voter.stored.max > 0) result.mustBeDark = false;
-        if (voter.stored.min < 255) result.mustBeLit = false;
+        if (voter.stored.min < levels) result.mustBeLit = false;
     }
     return result;
 }
@@ -56,12 +56,13 @@ void checkSlot(ShadowReport& report, const ListBuffers& buffers, std::size_t til
 }
 
 void checkPair(ShadowReport& report, const ListBuffers& buffers, std::size_t tile, std::uint32_t light,
-               const std::vector<Voter>& all, std::optional<std::uint32_t> slotOrFlag, bool mayEvaluate) {
+               const std::vector<Voter>& all, int levels, std::optional<std::uint32_t> slotOrFlag, bool mayEvaluate) {
     for (const Voter& voter : all) {
         ++report.pairs;
         report.ambiguousPairs += voter.stored.ambiguous();
+        report.loosePairs += voter.stored.max - voter.stored.min > 1;
     }
-    const Unanimity together = unanimity(all);
+    const Unanimity together = unanimity(all, levels);
     if (!slotOrFlag) {
         ++report.absent;
         if (!together.mayBeDark) report.findings.add("tile %zu: light %u is absent but not all dark", tile, light);
@@ -90,6 +91,10 @@ void checkPair(ShadowReport& report, const ListBuffers& buffers, std::size_t til
 ShadowReport checkFinalLists(const PixelGrid& grid, const std::vector<LightModel>& lights, const ShadowInput& input,
                              const ListBuffers& buffers, bool mayEvaluate) {
     ShadowReport report;
+    if (buffers.visibilityBits != input.visibilityBits) {
+        report.findings.add("slots have %u bits instead of %u", buffers.visibilityBits, input.visibilityBits);
+        return report;
+    }
     for (std::uint32_t tileY = 0; tileY < grid.tilesY; ++tileY) {
         for (std::uint32_t tileX = 0; tileX < grid.tilesX; ++tileX) {
             const std::size_t tile = std::size_t(tileY) * grid.tilesX + tileX;
@@ -99,8 +104,8 @@ ShadowReport checkFinalLists(const PixelGrid& grid, const std::vector<LightModel
                 std::optional<std::uint32_t> slotOrFlag;
                 for (const FinalEntry& entry : entries)
                     if (entry.light == light) slotOrFlag = entry.slotOrFlag;
-                checkPair(report, buffers, tile, light, voters(grid, tileX, tileY, lights[light], input), slotOrFlag,
-                          mayEvaluate);
+                checkPair(report, buffers, tile, light, voters(grid, tileX, tileY, lights[light], input),
+                          input.levels(), slotOrFlag, mayEvaluate);
             }
         }
     }

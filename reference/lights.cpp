@@ -34,6 +34,20 @@ std::uint32_t typeNumber(LightType type) {
     return 0;
 }
 
+void checkShadowFadeOf(Findings& findings, std::size_t index, const LightModel& light, const gpu::GpuLight& gpuLight) {
+    const bool fades = (gpuLight.typeAndFlags & gpu::kLightShadowFadesBit) != 0;
+    const bool closeToCall = light.shadowFade < 1.0 && light.shadowFade > 1.0 - 1e-4;
+    if (fades != light.shadowFades && !closeToCall)
+        findings.add("light %zu %s told to have a fading shadow", index, fades ? "must not be" : "is not");
+    if (!near(gpuLight.shadowFade, light.shadowFade, 1e-4, 1e-4))
+        findings.add("light %zu has shadow fade %g instead of %g", index, gpuLight.shadowFade, light.shadowFade);
+    if (light.type != LightType::Directional) return;
+    if (!near(gpuLight.positionVs.x, light.shadowFadeScale, 1e-6, 0.0) ||
+        !near(gpuLight.positionVs.y, light.shadowFadeOffset, 1e-6, 0.0))
+        findings.add("light %zu: shadow fade by %g d + %g instead of %g d + %g", index, gpuLight.positionVs.x,
+                     gpuLight.positionVs.y, light.shadowFadeScale, light.shadowFadeOffset);
+}
+
 void checkShadowOf(Findings& findings, std::size_t index, const LightModel& light, const gpu::GpuLight& gpuLight) {
     const bool casts = (gpuLight.typeAndFlags & gpu::kLightCastsBit) != 0;
     if (casts && !light.casts) findings.add("light %zu casts although the host gave it no shadow view", index);
@@ -42,8 +56,12 @@ void checkShadowOf(Findings& findings, std::size_t index, const LightModel& ligh
     if (!casts) return;
     if (gpuLight.shadowView != light.firstShadowView)
         findings.add("light %zu has shadow view %u instead of %u", index, gpuLight.shadowView, light.firstShadowView);
-    if (!near(gpuLight.shadowFade, light.shadowFade, 1e-4, 1e-4))
-        findings.add("light %zu has shadow fade %g instead of %g", index, gpuLight.shadowFade, light.shadowFade);
+    const std::uint32_t cascades = gpuLight.typeAndFlags >> gpu::kLightCascadesShift & gpu::kLightCascadesMask;
+    if (cascades != light.cascadeCount)
+        findings.add("light %zu has %u cascades instead of %u", index, cascades, light.cascadeCount);
+    if (!near(gpuLight.sourceRadius, light.sourceRadius, 1e-6, 0.0))
+        findings.add("light %zu has source radius %g instead of %g", index, gpuLight.sourceRadius, light.sourceRadius);
+    checkShadowFadeOf(findings, index, light, gpuLight);
     if (!near(gpuLight.biasMetres, light.biasMetres, 1e-6, 0.0))
         findings.add("light %zu has bias %g instead of %g", index, gpuLight.biasMetres, light.biasMetres);
 }
@@ -70,6 +88,19 @@ void checkShapeOf(Findings& findings, std::size_t index, const LightModel& light
 
 }  // namespace
 
+namespace {
+
+/// fade() as a straight line cut to [0, 1]; one that is shorter than a millimetre is drawn out to that.
+void fadeByPixel(const Light& light, LightModel& model) {
+    const double start = light.shadowFadeStartMetres, end = light.shadowFadeEndMetres;
+    if (!std::isfinite(end)) return;
+    model.shadowFades = true;
+    model.shadowFadeScale = -1.0 / std::max(end - start, 1e-3);
+    model.shadowFadeOffset = -model.shadowFadeScale * end;
+}
+
+}  // namespace
+
 std::vector<LightModel> makeLightModels(std::span<const Light> lights, const CameraModel& camera,
                                         double rangeCutoffLux) {
     std::vector<LightModel> result;
@@ -79,8 +110,9 @@ std::vector<LightModel> makeLightModels(std::span<const Light> lights, const Cam
         model.mask = light.mask;
         model.hostIndex = static_cast<std::uint32_t>(result.size());
         if (light.type != LightType::Point) model.direction = normalize(vec3(light.direction));
-        model.sourceRadius = light.sourceRadius;
-        model.casts = light.firstShadowView != kNoShadowViews && light.type != LightType::Directional;
+        const bool directional = light.type == LightType::Directional;
+        model.sourceRadius = directional ? std::tan(double(light.sourceRadius)) : light.sourceRadius;
+        model.casts = light.firstShadowView != kNoShadowViews;
         model.firstShadowView = light.firstShadowView;
         model.biasMetres = light.biasMetres;
         if (light.type == LightType::Spot) model.outerAngle = light.outerConeAngle;
@@ -91,6 +123,10 @@ std::vector<LightModel> makeLightModels(std::span<const Light> lights, const Cam
             const double distance = length(model.position - camera.eye);
             model.lightFade = fade(distance, light.fadeStartMetres, light.fadeEndMetres);
             model.shadowFade = fade(distance, light.shadowFadeStartMetres, light.shadowFadeEndMetres);
+            model.shadowFades = model.shadowFade < 1.0;
+        } else if (model.casts) {
+            model.cascadeCount = light.cascadeCount;
+            fadeByPixel(light, model);
         }
         result.push_back(model);
     }
@@ -105,6 +141,7 @@ std::vector<LightModel> orderLights(const std::vector<LightModel>& all, std::spa
         model.rangeMetres = 0;
         if (gpuLight.hostIndex < all.size()) model = all[gpuLight.hostIndex];
         model.casts = model.casts && (gpuLight.typeAndFlags & gpu::kLightCastsBit) != 0;
+        model.shadowFades = (gpuLight.typeAndFlags & gpu::kLightShadowFadesBit) != 0;
         result.push_back(model);
     }
     return result;

@@ -7,14 +7,16 @@
 // its light index. The order comes from the GpuLight array (hostIndex); all other values come from the host's
 // description.
 //
-// Limits: whether a light casts is taken from the GpuLight's bit once the order is known, because phase 1 may drop the
-// shadow of a light whose shadow has faded away (checkGpuLights allows no other change).
+// Limits: whether a light casts, and whether its shadow fades, is taken from the GpuLight's bits once the order is
+// known, because phase 1 decides it in floats: it may drop the shadow of a light whose shadow has faded away
+// (checkGpuLights allows no other change).
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "gnomon/scene.h"
+#include "gpu_interface/numbers.h"
 #include "gpu_interface/structs.h"
 #include "reference/camera.h"
 #include "reference/findings.h"
@@ -28,13 +30,20 @@ struct LightModel {
     Vec3 direction{0, 0, -1};  ///< unit, from the light into the scene
     double rangeMetres = kInfinity;
     double outerAngle = kPi;  ///< spots: half-angle of the cone, radians
-    double sourceRadius = 0;
+    double sourceRadius = 0;  ///< metres; directional lights: tangent of the angular radius
     bool casts = false;
     std::uint32_t firstShadowView = kNoShadowViews;
+    std::uint32_t cascadeCount = 0;  ///< directional lights
     double biasMetres = 0;
-    double lightFade = 1;   ///< 0: the light has faded away
-    double shadowFade = 1;  ///< visibility = 1 - shadowFade * (1 - visibility)
+    double lightFade = 1;      ///< 0: the light has faded away
+    double shadowFade = 1;     ///< visibility = 1 - shadowFade * (1 - visibility)
+    bool shadowFades = false;  ///< lets light through, here or farther away, also where faces look away
+    double shadowFadeScale = 0, shadowFadeOffset = 1;  ///< directional: shadowFade by the distance of eye and pixel
     std::uint32_t hostIndex = 0;
+
+    [[nodiscard]] std::uint32_t viewCount() const {
+        return type == LightType::Point ? gpu::kPointLightFaces : type == LightType::Spot ? 1 : cascadeCount;
+    }
 };
 
 /// All lights of the host, in the host's order. `rangeCutoffLux` as in PrepareDesc.

@@ -124,9 +124,11 @@ bool isSlot(std::uint32_t slotOrFlag) {
 
 std::uint8_t storedVisibility(const ListBuffers& buffers, std::uint32_t slot, std::uint32_t x, std::uint32_t y) {
     const std::uint32_t lane = gpu::mortonLane(x, y);
-    const std::size_t word = std::size_t(slot) * gpu::kVisibilitySlotWords + lane / 4;
+    const std::uint32_t bits = buffers.visibilityBits, perWord = 32 / bits;
+    const std::size_t word = std::size_t(slot) * gpu::visibilitySlotWords(bits) + lane / perWord;
     if (word >= buffers.visibility.size()) return 0;
-    return static_cast<std::uint8_t>(buffers.visibility[word] >> (8 * (lane % 4)));
+    const std::uint32_t value = buffers.visibility[word] >> (bits * (lane % perWord));
+    return static_cast<std::uint8_t>(value & gpu::visibilityLevels(bits));
 }
 
 StructureReport checkStructure(const ListBuffers& buffers, std::size_t lightCount) {

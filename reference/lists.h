@@ -35,7 +35,8 @@ struct ListBuffers {
     std::uint32_t listEntries = 0;      ///< capacity
     std::uint32_t visibilitySlots = 0;  ///< capacity
     std::uint32_t reservation = gpu::kReserveApproximate;
-    std::uint32_t fixedEntries = 0;  ///< for kReserveFixed
+    std::uint32_t fixedEntries = 0;                          ///< for kReserveFixed
+    std::uint32_t visibilityBits = gpu::kMaxVisibilityBits;  ///< of a pixel in a slot
 };
 
 struct FinalEntry {
@@ -48,7 +49,7 @@ bool hasNoListSpace(const ListBuffers& buffers, std::size_t tile);
 std::vector<std::uint32_t> earlyLights(const ListBuffers& buffers, std::size_t tile);
 std::vector<FinalEntry> finalEntries(const ListBuffers& buffers, std::size_t tile);
 bool isSlot(std::uint32_t slotOrFlag);
-/// The byte of a pixel in a visibility slot; x and y in 0..7.
+/// A pixel's value in a visibility slot; x and y in 0..7.
 std::uint8_t storedVisibility(const ListBuffers& buffers, std::uint32_t slot, std::uint32_t x, std::uint32_t y);
 
 struct StructureReport {

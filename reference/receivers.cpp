@@ -60,6 +60,8 @@ PixelGrid makePixelGrid(const CameraModel& camera, const Receivers& receivers) {
             const std::size_t i = std::size_t(y) * grid.widthPx + x;
             Pixel& pixel = grid.pixels[i];
             const float depth = receivers.depth[i];
+            pixel.x = x;
+            pixel.y = y;
             pixel.background = isBackground(camera, depth);
             if (!receivers.receiverFlags.empty()) {
                 pixel.receiverMask = receivers.receiverFlags[2 * i];
@@ -73,6 +75,9 @@ PixelGrid makePixelGrid(const CameraModel& camera, const Receivers& receivers) {
             pixel.viewDepth = viewDepth(camera, pixel.position);
             pixel.viewDepthError = viewDepthError(camera, depth);
             pixel.positionError = positionError(camera, pixel.position, depth);
+            pixel.eyeDistance = length(pixel.position - camera.eye);
+            pixel.eyeDistanceError =
+                pixel.positionError + kErrorFactor * kFloatRoundoff * (pixel.eyeDistance + sumOfMagnitudes(camera.eye));
         }
     }
     return grid;

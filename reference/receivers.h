@@ -30,11 +30,14 @@ void encodeOctahedral(Vec3 normal, std::uint16_t out[2]);
 Vec3 decodeOctahedral(std::uint16_t x, std::uint16_t y);
 
 struct Pixel {
+    std::uint32_t x = 0, y = 0;  ///< in the active extent
     bool background = true;
     Vec3 position;              ///< origin-relative metres
     double viewDepth = 0;       ///< metres
     double viewDepthError = 0;  ///< metres, see camera.h
     double positionError = 0;   ///< metres, see camera.h
+    double eyeDistance = 0;     ///< metres from the camera
+    double eyeDistanceError = 0;
     bool hasFaceNormal = false;
     Vec3 faceNormal;  ///< unit
     std::uint8_t receiverMask = 0xFF;

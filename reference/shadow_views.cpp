@@ -60,8 +60,8 @@ std::vector<ShadowViewModel> makeShadowViewModels(std::span<const ShadowView> vi
         model.reversed = view.deviceDepth == DeviceDepth::ReversedZ;
         model.depth = depthFromLinear(view.nearMetres, view.farMetres, model.orthographic, model.reversed);
         // One metre across the view at linear depth 1 (or anywhere) is |row| of ndc, of which the rectangle holds two.
-        model.texelMetres = std::max(2.0 / (length(rowOf(model.clipFromWorld, 0)) * model.widthPx),
-                                     2.0 / (length(rowOf(model.clipFromWorld, 1)) * model.heightPx));
+        model.pxPerMetreX = length(rowOf(model.clipFromWorld, 0)) * 0.5 * model.widthPx;
+        model.pxPerMetreY = length(rowOf(model.clipFromWorld, 1)) * 0.5 * model.heightPx;
         result.push_back(model);
     }
     return result;
@@ -97,8 +97,10 @@ Findings checkShadowViews(std::span<const ShadowView> views, std::span<const gpu
         if (view.flags != flags) findings.add("shadow view %zu: flags %u instead of %u", i, view.flags, flags);
         if ((view.atlasAndLayer & 0xFFu) != model.atlas || view.atlasAndLayer >> 8 != model.layer)
             findings.add("shadow view %zu: atlas and layer %x", i, view.atlasAndLayer);
-        if (!near(view.texelMetres, model.texelMetres, 1e-4 * model.texelMetres))
-            findings.add("shadow view %zu: texel of %g m instead of %g m", i, view.texelMetres, model.texelMetres);
+        if (!near(view.pxPerMetre.x, model.pxPerMetreX, 1e-6 * model.pxPerMetreX) ||
+            !near(view.pxPerMetre.y, model.pxPerMetreY, 1e-6 * model.pxPerMetreY))
+            findings.add("shadow view %zu: %g x %g texels per metre instead of %g x %g", i, view.pxPerMetre.x,
+                         view.pxPerMetre.y, model.pxPerMetreX, model.pxPerMetreY);
     }
     return findings;
 }

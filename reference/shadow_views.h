@@ -6,8 +6,7 @@
 // What: the projection of a world point into a view's rectangle, its linear depth, and how far 32-bit floats may be
 // off.
 //
-// Limits: perspective matrices have clip.w = linear depth in metres. A texel's size is the larger of its width and
-// height; a test may set it to the GpuShadowView's own (checkShadowViews compares both).
+// Limits: perspective matrices have clip.w = linear depth in metres.
 
 #include <cstdint>
 #include <span>
@@ -47,7 +46,7 @@ struct ShadowViewModel {
     bool orthographic = false;
     bool reversed = true;
     DepthFromLinear depth;
-    double texelMetres = 0;  ///< at linear depth 1 m (perspective) or anywhere
+    double pxPerMetreX = 0, pxPerMetreY = 0;  ///< texels per metre, at linear depth 1 m (perspective) or anywhere
 };
 
 std::vector<ShadowViewModel> makeShadowViewModels(std::span<const ShadowView> views);

@@ -43,7 +43,7 @@ Light randomLight(Random& random, const CameraSetup& camera, const LightSetup& s
     store(random.unitVector(), light.direction);
     light.rangeMetres = static_cast<float>(random.uniform(0.2, setup.maxRangeMetres));
     light.outerConeAngle = static_cast<float>(random.uniform(0.05, setup.maxOuterAngle));
-    light.sourceRadius = static_cast<float>(random.uniform(0.0, 0.1));
+    light.sourceRadius = static_cast<float>(random.uniform(0.0, setup.maxSourceRadius));
     light.intensity = static_cast<float>(random.uniform(0.1, 100.0));
     light.mask = random.chance(0.8) ? 0xFF : static_cast<std::uint8_t>(random.below(256));
     if (light.type != LightType::Directional && random.chance(setup.castingShare)) light.firstShadowView = 0;
@@ -183,6 +183,13 @@ std::vector<Light> makeLights(Random& random, const CameraSetup& camera, const L
                 break;
             default:
                 break;
+        }
+        if (i + setup.suns >= setup.count) {
+            light.type = LightType::Directional;
+            light.firstShadowView = 0;
+            light.cascadeCount = 1 + i % 4;
+            light.sourceRadius *= 0.1f;
+            store(normalize(random.inBox({-1, -1.5, -1}, {1, -0.3, 1})), light.direction);
         }
         lights.push_back(light);
     }

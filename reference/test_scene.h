@@ -65,9 +65,11 @@ struct LightSetup {
     double spotShare = 0.5;
     double directionalShare = 0.02;
     double maxRangeMetres = 6;
-    double spreadMetres = 14;    ///< half the side of the cube, around the eye and the room, that holds them
-    double maxOuterAngle = 1.2;  ///< radians
-    double fadingShare = 0.2;    ///< with distance fades that matter
+    double spreadMetres = 14;      ///< half the side of the cube, around the eye and the room, that holds them
+    double maxOuterAngle = 1.2;    ///< radians
+    double fadingShare = 0.2;      ///< with distance fades that matter
+    std::uint32_t suns = 0;        ///< of `count`, the last ones: directional lights that cast, with 1 to 4 cascades
+    double maxSourceRadius = 0.1;  ///< metres; suns: a tenth of that in radians
 };
 /// Random ones, and some on purpose: at the eye, crossing the near plane, touching the view's side, behind the camera,
 /// with a range derived from intensity, with a tiny range, with a very large one.

@@ -11,10 +11,28 @@ Vec3 anyAcross(Vec3 direction) {
     return normalize(cross(direction, helper));
 }
 
+std::vector<ShadowView> cascadesOf(const Light& light, const ShadowSetup& setup, bool reversed) {
+    constexpr double kBackMetres = 30, kFarMetres = 70, kGrowth = 3;
+    const Vec3 direction = normalize(vec3(light.direction));
+    const Vec3 down = anyAcross(direction), right = cross(down, direction);
+    std::vector<ShadowView> result;
+    double half = setup.cascadeHalfExtentMetres;
+    for (std::uint32_t i = 0; i < light.cascadeCount; ++i, half *= kGrowth) {
+        const double texel = 2 * half / setup.viewSizePx;
+        const auto toTexel = [&](double metres) { return std::floor(metres / texel) * texel - metres; };
+        const Vec3 centre = setup.cascadeCentre + right * toTexel(dot(right, setup.cascadeCentre)) +
+                            down * toTexel(dot(down, setup.cascadeCentre));
+        result.push_back(makeShadowView(centre - direction * kBackMetres, direction, down, half, setup.nearMetres,
+                                        kFarMetres, true, reversed));
+    }
+    return result;
+}
+
 std::vector<ShadowView> viewsOf(const Light& light, const ShadowSetup& setup, bool reversed, double rangeMetres) {
     const Vec3 from = vec3(light.position);
     const double farMetres = setup.infiniteFar ? kInfinity : rangeMetres * 1.1 + setup.nearMetres;
     std::vector<ShadowView> result;
+    if (light.type == LightType::Directional) return cascadesOf(light, setup, reversed);
     if (light.type == LightType::Spot) {
         const Vec3 direction = normalize(vec3(light.direction));
         // A texel more on every side than the cone needs.
@@ -117,7 +135,7 @@ TestShadows buildShadows(const Shapes& shapes, std::span<Light> lights, const Sh
     TestShadows result;
     bool flip = false;
     for (Light& light : lights) {
-        if (light.firstShadowView == kNoShadowViews || light.type == LightType::Directional) continue;
+        if (light.firstShadowView == kNoShadowViews) continue;
         const double range = light.rangeMetres > 0 ? light.rangeMetres : std::sqrt(light.intensity / rangeCutoffLux);
         light.firstShadowView = static_cast<std::uint32_t>(result.views.size());
         for (const ShadowView& view : viewsOf(light, setup, setup.reversed != flip, range))

@@ -1,10 +1,11 @@
 #pragma once
 // Seeded input for tests: shadow views of a set of lights, and atlases with the analytic scene's depth in them.
 //
-// What: every point light that is to cast gets six views, every spot one that holds its cone, packed into the atlases'
-// cells one after the other. Each texel's ray is cast through its centre in double precision and stored as device
-// depth. Texels outside every rectangle hold the nearest possible depth: a kernel that leaves its rectangle finds
-// shadow there.
+// What: every point light that is to cast gets six views, every spot one that holds its cone, every directional light
+// its cascades, each three times as wide as the one before and centred on whole texels of its own, all packed into the
+// atlases' cells one after the other. Each texel's ray is cast through its centre in double precision and stored as
+// device depth. Texels outside every rectangle hold the nearest possible depth: a kernel that leaves its rectangle
+// finds shadow there.
 
 #include <span>
 #include <vector>
@@ -25,6 +26,8 @@ struct ShadowSetup {
     bool infiniteFar = true;     ///< else far is a little beyond the light's range
     double nearMetres = 0.05;
     double borderTexels = 2;  ///< by which point light faces reach beyond 90 degrees
+    Vec3 cascadeCentre{0, 1, 0};
+    double cascadeHalfExtentMetres = 1.5;  ///< of the first cascade
 };
 
 struct TestShadows {
@@ -32,7 +35,7 @@ struct TestShadows {
     std::vector<AtlasCopy> atlases;
 };
 
-/// Gives every point or spot light whose firstShadowView is not kNoShadowViews its views (and sets that index).
+/// Gives every light whose firstShadowView is not kNoShadowViews its views (and sets that index).
 TestShadows buildShadows(const Shapes& shapes, std::span<Light> lights, const ShadowSetup& setup,
                          double rangeCutoffLux = 0.02f);
 

@@ -10,12 +10,29 @@ using namespace reference;
 
 namespace {
 
-ShadowInput shadowInputOf(const FrameInput& input, const ContextSetup& setup) {
+ShadowFilter filterOf(Filter filter) {
+    switch (filter) {
+        case Filter::Hard:
+            return ShadowFilter::Hard;
+        case Filter::Pcf:
+            return ShadowFilter::Pcf;
+        case Filter::Pcss:
+            return ShadowFilter::Pcss;
+        case Filter::Off:
+            break;
+    }
+    return ShadowFilter::Off;
+}
+
+ShadowInput shadowInputOf(const FrameInput& input, const FrameResult& result) {
+    const ContextSetup& setup = result.setup;
     ShadowInput out;
-    out.filter = setup.filter == Filter::Hard  ? ShadowFilter::Hard
-                 : setup.filter == Filter::Pcf ? ShadowFilter::Pcf
-                                               : ShadowFilter::Off;
+    out.filter = filterOf(setup.filter);
     out.pcfRadius = static_cast<int>(setup.pcfRadius);
+    out.pcssTaps = {static_cast<int>(setup.pcss.searchTaps), static_cast<int>(setup.pcss.filterTaps)};
+    out.patternTurn = input.patternPerFrame ? result.constants.random.x * 2654435769u : 0u;
+    EXPECT_EQ(result.constants.random.y, out.patternTurn);
+    out.visibilityBits = setup.visibilityBits;
     out.subsurfaceBiasMetres = input.subsurfaceBiasMetres;
     out.views = makeShadowViewModels(input.shadows->views);
     out.atlases = input.shadows->atlases;
@@ -51,7 +68,7 @@ void checkCanaries(const FrameResult& r, bool shadows) {
         early += i % gpu::kEarlyIndicesPerWord == 0 && word < r.earlyList.size() && r.earlyList[word] != kCanary;
     }
     const std::size_t used = shadows ? std::min(r.counters.visibilitySlots, r.slotCapacity) : 0;
-    for (std::size_t i = used * gpu::kVisibilitySlotWords; i < r.visibility.size(); ++i)
+    for (std::size_t i = used * r.slotWords(); i < r.visibility.size(); ++i)
         slots += r.visibility[i] != kCanary;
     EXPECT_EQ(early, 0u) << "words of the early list that no tile owns were written";
     EXPECT_EQ(final, 0u) << "words of the final list that no tile owns were written";
@@ -176,7 +193,7 @@ Checked checkFrame(const FrameInput& input, const FrameResult& result, const Che
     if (options.shadows) {
         expectNone(checkEvaluateTiles(lists, result.evaluateTiles), "tiles to evaluate");
         if (options.bytes) {
-            out.shadows = checkFinalLists(out.grid, out.lights, shadowInputOf(input, result.setup), lists,
+            out.shadows = checkFinalLists(out.grid, out.lights, shadowInputOf(input, result), lists,
                                           options.slotOverflow);
             expectNone(out.shadows.findings, "generate shadows");
         }
@@ -194,8 +211,8 @@ std::vector<std::vector<DecodedEntry>> decodeFinalLists(const FrameResult& r) {
             DecodedEntry decoded;
             decoded.hostLight = r.lights[entry.light].hostIndex;
             if (isSlot(entry.slotOrFlag)) {
-                const auto first = r.visibility.begin() + std::ptrdiff_t(entry.slotOrFlag) * gpu::kVisibilitySlotWords;
-                decoded.bytes.assign(first, first + gpu::kVisibilitySlotWords);
+                const auto first = r.visibility.begin() + std::ptrdiff_t(entry.slotOrFlag) * r.slotWords();
+                decoded.bytes.assign(first, first + r.slotWords());
             } else {
                 decoded.flag = entry.slotOrFlag;
             }

@@ -13,6 +13,7 @@ GNOMON_ON_EVERY_DEVICE(DeterminismTest);
 FrameInput crowdedRoom(std::uint64_t seed = 30) {
     RoomSetup setup{.seed = seed, .widthPx = 88, .heightPx = 72};
     setup.lights.castingShare = 0.8;
+    setup.lights.suns = 1;
     setup.shadows.viewSizePx = 16;
     return makeRoomFrame(setup);
 }
@@ -22,7 +23,7 @@ TEST_P(DeterminismTest, SameInputSameFrame) {
     std::vector<std::vector<DecodedEntry>> first;
     for (const ListReservation reservation :
          {ListReservation::Approximate, ListReservation::Accurate, ListReservation::Fixed}) {
-        Rig rig(device(), {.reservation = reservation, .fixedEntries = 90}, viewDescFor(input));
+        Rig rig(device(), {.filter = Filter::Pcss, .reservation = reservation, .fixedEntries = 90}, viewDescFor(input));
         ASSERT_TRUE(rig.ok());
         for (int i = 0; i < 3; ++i) {
             const FrameResult result = rig.run(input, {.fill = i != 1});
@@ -33,6 +34,20 @@ TEST_P(DeterminismTest, SameInputSameFrame) {
             EXPECT_EQ(first, decodeFinalLists(result));
         }
     }
+}
+
+// The pattern turns with the frame's number where that is asked for, and only there.
+TEST_P(DeterminismTest, PatternPerFrame) {
+    FrameInput input = crowdedRoom();
+    for (Light& light : input.lights) light.sourceRadius = light.type == LightType::Directional ? 0.05f : 0.3f;
+    Rig still(device(), {.filter = Filter::Pcss}, viewDescFor(input));
+    ASSERT_TRUE(still.ok());
+    const auto first = decodeFinalLists(still.run(input));
+    EXPECT_EQ(first, decodeFinalLists(still.run(input)));
+    input.patternPerFrame = true;
+    const auto turned = decodeFinalLists(still.run(input));
+    EXPECT_NE(first, turned);
+    EXPECT_NE(turned, decodeFinalLists(still.run(input)));
 }
 
 // Several views of two contexts, their frames interleaved, each with its own input.

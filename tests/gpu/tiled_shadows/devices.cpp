@@ -112,6 +112,9 @@ ContextDesc TestDevice::contextDesc(const ContextSetup& setup) const {
     desc.subgroupSize = setup.subgroupSize;
     desc.filter = setup.filter;
     desc.pcfRadius = setup.pcfRadius;
+    desc.pcss = setup.pcss;
+    desc.visibilityBits = setup.visibilityBits;
+    desc.maxShadowAtlases = setup.maxShadowAtlases;
     desc.listReservation = setup.reservation;
     desc.fixedListEntriesPerTile = setup.fixedEntries;
     desc.hostDepthPyramid = setup.hostDepthPyramid;
@@ -120,9 +123,11 @@ ContextDesc TestDevice::contextDesc(const ContextSetup& setup) const {
 }
 
 const Context* TestDevice::context(const ContextSetup& setup) {
-    char key[64];
-    std::snprintf(key, sizeof(key), "%d %u %d %u %u %d %d", int(setup.filter), setup.pcfRadius, int(setup.reservation),
-                  setup.fixedEntries, setup.subgroupSize, int(setup.hostDepthPyramid), int(setup.hostProvider));
+    char key[96];
+    std::snprintf(key, sizeof(key), "%d %u %d %u %u %d %d %u %u %u %u", int(setup.filter), setup.pcfRadius,
+                  int(setup.reservation), setup.fixedEntries, setup.subgroupSize, int(setup.hostDepthPyramid),
+                  int(setup.hostProvider), setup.pcss.searchTaps, setup.pcss.filterTaps, setup.visibilityBits,
+                  setup.maxShadowAtlases);
     std::unique_ptr<Context>& context = contexts_[key];
     if (context == nullptr) {
         const Result made = Context::create(contextDesc(setup), context);

@@ -17,6 +17,9 @@ namespace gnomon::test {
 struct ContextSetup {
     Filter filter = Filter::Pcf;
     std::uint32_t pcfRadius = 1;
+    PcssTaps pcss = kPcssMedium;
+    std::uint32_t visibilityBits = 8;
+    std::uint32_t maxShadowAtlases = 4;
     ListReservation reservation = ListReservation::Approximate;
     std::uint32_t fixedEntries = 0;
     std::uint32_t subgroupSize = 0;

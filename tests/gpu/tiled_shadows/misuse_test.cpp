@@ -37,6 +37,14 @@ TEST_P(MisuseTest, ContextDesc) {
         {"queueFamilies", [&](ContextDesc& d) { d.queueFamilies = many; }},
         {"pcfRadius", [](ContextDesc& d) { d.pcfRadius = 0; }},
         {"pcfRadius", [](ContextDesc& d) { d.pcfRadius = 4; }},
+        {"taps", [](ContextDesc& d) { d.pcss.searchTaps = 0; }},
+        {"taps", [](ContextDesc& d) { d.pcss.searchTaps = 65; }},
+        {"taps", [](ContextDesc& d) { d.pcss.filterTaps = 0; }},
+        {"taps", [](ContextDesc& d) { d.pcss.filterTaps = 65; }},
+        {"maxShadowAtlases", [](ContextDesc& d) { d.maxShadowAtlases = 0; }},
+        {"maxShadowAtlases", [](ContextDesc& d) { d.maxShadowAtlases = 5; }},
+        {"visibilityBits", [](ContextDesc& d) { d.visibilityBits = 0; }},
+        {"visibilityBits", [](ContextDesc& d) { d.visibilityBits = 5; }},
         {"fixedListEntriesPerTile", [](ContextDesc& d) { d.listReservation = ListReservation::Fixed; }},
         {"fixedListEntriesPerTile",
          [](ContextDesc& d) {
@@ -107,8 +115,11 @@ TEST_P(MisuseTest, MemoryReport) {
         EXPECT_LE(report.buffers[i].bytes, device().vulkan().limits().maxStorageBufferRange) << report.buffers[i].name;
 }
 
+/// Its last light is a sun, and the last shadow view that sun's last cascade.
 FrameInput smallRoom() {
-    return makeRoomFrame({.seed = 40, .widthPx = 32, .heightPx = 24, .shadows = {.viewSizePx = 8}});
+    RoomSetup setup{.seed = 40, .widthPx = 32, .heightPx = 24, .shadows = {.viewSizePx = 12}};
+    setup.lights.suns = 1;
+    return makeRoomFrame(setup);
 }
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
@@ -132,17 +143,23 @@ TEST_P(MisuseTest, ShadowViews) {
         {"at least", [](ShadowView& v) { v.widthPx = 7; }},
         {"near", [](ShadowView& v) { v.nearMetres = 0; }},
         {"near", [](ShadowView& v) { v.farMetres = v.nearMetres; }},
-        {"near", [](ShadowView& v) { v.orthographic = true, v.farMetres = kInf; }},
+        {"perspective", [](ShadowView& v) { v.orthographic = true, v.farMetres = 10; }},
         {"near", [](ShadowView& v) { v.nearMetres = kNan; }},
+    };
+    const auto refuses = [&](const Case& c, std::size_t which) {
+        FrameDesc frame = rig.frameDesc(input);
+        std::vector<ShadowView> views = input.shadows->views;
+        c.spoil(views[which]);
+        frame.shadowViews = views;
+        expectRefused(rig.view().beginFrame(frame), c.word);
     };
     for (std::size_t i = 0; i < std::size(cases); ++i) {
         SCOPED_TRACE("case " + std::to_string(i) + " " + cases[i].word);
-        FrameDesc frame = rig.frameDesc(input);
-        std::vector<ShadowView> views = input.shadows->views;
-        cases[i].spoil(views[1]);
-        frame.shadowViews = views;
-        expectRefused(rig.view().beginFrame(frame), cases[i].word);
+        refuses(cases[i], 1);
     }
+    const std::size_t cascade = input.shadows->views.size() - 1;
+    refuses({"orthographic", [](ShadowView& v) { v.orthographic = false; }}, cascade);
+    refuses({"near", [](ShadowView& v) { v.farMetres = kInf; }}, cascade);
     checkFrame(input, rig.run(input));
 }
 
@@ -158,6 +175,11 @@ TEST_P(MisuseTest, BeginFrame) {
         f.atlases = atlases;
     };
     std::vector<Light> lights = input.lights;
+    const auto withSun = [&](FrameDesc& f, auto spoil) {
+        lights = input.lights;
+        spoil(lights.back());
+        f.view.lights = lights;
+    };
     struct Case {
         const char* word;
         std::function<void(FrameDesc&)> spoil;
@@ -186,6 +208,11 @@ TEST_P(MisuseTest, BeginFrame) {
              f.view.lights = lights;
          }},
         {"ight", [&](FrameDesc& f) { f.shadowViews = f.shadowViews.first(1); }},  // lights refer beyond
+        {"cascadeCount", [&](FrameDesc& f) { withSun(f, [](Light& sun) { sun.cascadeCount = 0; }); }},
+        {"cascadeCount", [&](FrameDesc& f) { withSun(f, [](Light& sun) { sun.cascadeCount = 9; }); }},
+        {"firstShadowView", [&](FrameDesc& f) { withSun(f, [](Light& sun) { ++sun.firstShadowView; }); }},
+        {"sourceRadius", [&](FrameDesc& f) { withSun(f, [](Light& sun) { sun.sourceRadius = 0.51f; }); }},
+        {"shadowFade", [&](FrameDesc& f) { withSun(f, [](Light& sun) { sun.shadowFadeEndMetres = 1; }); }},
         {"amera", [](FrameDesc& f) { f.view.camera.viewFromWorld[0] = 2; }},
         {"amera", [](FrameDesc& f) { std::memset(f.view.camera.clipFromView, 0, 64); }},
     };

@@ -15,6 +15,7 @@ GNOMON_ON_EVERY_DEVICE(OverflowTest);
 FrameInput crowdedRoom() {
     RoomSetup setup{.seed = 10, .widthPx = 88, .heightPx = 72};
     setup.lights.castingShare = 0.8;
+    setup.lights.suns = 1;
     return makeRoomFrame(setup);
 }
 
@@ -44,7 +45,11 @@ TEST_P(OverflowTest, PoolsOfEverySize) {
     const FrameInput input = crowdedRoom();
     for (const ListReservation reservation : {ListReservation::Approximate, ListReservation::Accurate}) {
         SCOPED_TRACE(int(reservation));
-        const ContextSetup setup{.reservation = reservation};
+        const bool halfSlots = reservation == ListReservation::Accurate;
+        const ContextSetup setup{.filter = halfSlots ? Filter::Pcss : Filter::Pcf,
+                                 .pcss = kPcssLow,
+                                 .visibilityBits = halfSlots ? 4u : 8u,
+                                 .reservation = reservation};
         Rig generous(device(), setup, viewDescFor(input));
         ASSERT_TRUE(generous.ok());
         const FrameResult full = generous.run(input);

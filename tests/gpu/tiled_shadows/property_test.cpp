@@ -80,7 +80,8 @@ TEST_P(PropertyTest, NoLightIsEverLost) {
     std::uint64_t done = 0;
     std::size_t must = 0, may = 0, bytes = 0;
     const auto start = std::chrono::steady_clock::now();
-    Rig approximate(device(), {.reservation = ListReservation::Approximate}, desc);
+    Rig approximate(device(),
+                    {.filter = Filter::Pcss, .pcss = kPcssLow, .reservation = ListReservation::Approximate}, desc);
     Rig accurate(device(), {.filter = Filter::Hard, .reservation = ListReservation::Accurate}, desc);
     ASSERT_TRUE(approximate.ok() && accurate.ok());
     for (std::uint64_t seed = 1; seed <= seeds && !HasFailure(); ++seed, ++done) {
@@ -114,7 +115,8 @@ TEST_P(PropertyTest, RandomOverflow) {
         desc.visibilitySlots = 1 + random.below(40);
         desc.maxShadowViews = 6;
         const auto reservation = static_cast<ListReservation>(random.below(3));
-        Rig rig(device(), {.reservation = reservation, .fixedEntries = 10}, desc);
+        const std::uint32_t bits = random.chance(0.5) ? 4 : 8;
+        Rig rig(device(), {.visibilityBits = bits, .reservation = reservation, .fixedEntries = 10}, desc);
         ASSERT_TRUE(rig.ok());
         for (std::uint64_t i = 0; i < 3; ++i) {
             const FrameInput input = randomFrame(seed * 100 + i);

@@ -109,6 +109,7 @@ reference::ListBuffers FrameResult::lists() const {
                       : setup.reservation == ListReservation::Accurate  ? gpu::kReserveAccurate
                                                                         : gpu::kReserveFixed;
     out.fixedEntries = setup.fixedEntries;
+    out.visibilityBits = setup.visibilityBits;
     return out;
 }
 
@@ -164,6 +165,7 @@ FrameDesc Rig::frameDesc(const FrameInput& input) {
     if (!input.depthPyramid.empty()) frame.depthPyramid.view = pyramid_.view();
     frame.atlases = atlasDescs_;
     frame.subsurfaceBiasMetres = input.subsurfaceBiasMetres;
+    frame.patternPerFrame = input.patternPerFrame;
     frame.dropLightsFacedAway = input.dropLightsFacedAway;
     return frame;
 }

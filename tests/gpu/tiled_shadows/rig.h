@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "devices.h"
+#include "gpu_interface/packing.h"
 #include "gpu_interface/structs.h"
 #include "reference/lists.h"
 #include "reference/receivers.h"
@@ -26,6 +27,7 @@ struct FrameInput {
     std::shared_ptr<const reference::TestShadows> shadows;
     bool dropLightsFacedAway = true;
     float subsurfaceBiasMetres = 0.02f;
+    bool patternPerFrame = false;
     std::vector<float> depthPyramid;  ///< with ContextSetup::hostDepthPyramid: min and max device depth per shadow tile
 };
 
@@ -45,6 +47,7 @@ struct FrameResult {
     std::size_t beyondTiles = 0;      ///< words of per-tile arrays beyond the active tiles, likewise
     ContextSetup setup;
 
+    [[nodiscard]] std::uint32_t slotWords() const { return gpu::visibilitySlotWords(setup.visibilityBits); }
     [[nodiscard]] std::uint32_t tilesX() const { return constants.tileCounts.x; }
     [[nodiscard]] std::uint32_t tilesY() const { return constants.tileCounts.y; }
     [[nodiscard]] reference::ListBuffers lists() const;

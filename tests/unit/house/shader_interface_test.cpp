@@ -47,9 +47,8 @@ std::vector<MemberLayout> gpuShadowView() {
             MEMBER(GpuShadowView, pxFromNdcOffset),  MEMBER(GpuShadowView, rectMinPx),
             MEMBER(GpuShadowView, rectMaxPx),        MEMBER(GpuShadowView, depthFromLinearA),
             MEMBER(GpuShadowView, depthFromLinearB), MEMBER(GpuShadowView, flags),
-            MEMBER(GpuShadowView, atlasAndLayer),    MEMBER(GpuShadowView, texelMetres),
-            MEMBER(GpuShadowView, atlasPerTexelX),   MEMBER(GpuShadowView, atlasPerTexelY),
-            MEMBER(GpuShadowView, reserved)};
+            MEMBER(GpuShadowView, atlasAndLayer),    MEMBER(GpuShadowView, pxPerMetre),
+            MEMBER(GpuShadowView, atlasPerTexel)};
 }
 
 std::vector<MemberLayout> gpuFrame() {
@@ -312,12 +311,14 @@ TEST(ShaderInterface, ConstantsAreKnown) {
     std::unique_ptr<Context> context;
     ASSERT_TRUE(Context::create(vulkan.desc(), context));
     const std::size_t given = context->specializationValues().size();
-    EXPECT_EQ(given, kSpecHostDepthPyramid + 1u);
+    EXPECT_EQ(given, kSpecShadowAtlases + 1u);
+    const std::uint32_t ofTheRenderer = kSpecFirstFree + 2;
     for (const ShaderLayout& shader : libraryShaders()) {
         for (std::uint32_t id : shader.constantIds) EXPECT_LT(id, given) << shader.name;
     }
     for (const ShaderLayout& shader : lightingShaders()) {
-        for (std::uint32_t id : shader.constantIds) EXPECT_TRUE(id < given || id == kSpecFirstFree) << shader.name << " " << id;
+        for (std::uint32_t id : shader.constantIds)
+            EXPECT_TRUE(id < given || (id >= kSpecFirstFree && id < ofTheRenderer)) << shader.name << " " << id;
     }
     for (const ShaderLayout& shader : libraryAndLighting()) {
         EXPECT_EQ(std::ranges::count(shader.constantIds, kSpecSubgroupSize), 1) << shader.name;
@@ -333,14 +334,21 @@ TEST(ShaderInterface, PipelinesGetTheConstants) {
     desc.listReservation = ListReservation::Accurate;
     desc.pcfRadius = 3;
     desc.hostDepthPyramid = true;
+    desc.pcss = {3, 5};
+    desc.visibilityBits = 4;
+    desc.maxShadowAtlases = 2;
     std::unique_ptr<Context> context;
     ASSERT_TRUE(Context::create(desc, context));
-    std::vector<std::uint32_t> expected(5);
+    std::vector<std::uint32_t> expected(9);
     expected[kSpecSubgroupSize] = 64;
     expected[kSpecProvider] = kProviderHard;
     expected[kSpecListReservation] = kReserveAccurate;
     expected[kSpecPcfRadius] = 3;
     expected[kSpecHostDepthPyramid] = 1;
+    expected[kSpecPcssSearchTaps] = 3;
+    expected[kSpecPcssFilterTaps] = 5;
+    expected[kSpecVisibilityBits] = 4;
+    expected[kSpecShadowAtlases] = 2;
     EXPECT_TRUE(std::ranges::equal(context->specializationValues(), expected));
     ASSERT_EQ(vulkan.pipelines.size(), 5u);
     for (const FakeVulkan::Pipeline& pipeline : vulkan.pipelines) {

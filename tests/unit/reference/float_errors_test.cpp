@@ -3,27 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "honest_buffers.h"
+#include "shadows_in_floats.h"
 
 namespace gnomon::reference {
 namespace {
 
-struct F3 {
-    float x, y, z;
-};
-F3 f3(Vec3 v) {
-    return {float(v.x), float(v.y), float(v.z)};
-}
-F3 sub(F3 a, F3 b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
 F3 mad(F3 a, F3 b, float s) {
-    return {a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
-}
-float dotF(F3 a, F3 b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-float lengthF(F3 a) {
-    return std::sqrt(dotF(a, a));
+    return a + b * s;
 }
 
 /// A position as a shader would reconstruct it: pixel * scale + offset, times view depth, along float axes.
@@ -50,83 +36,16 @@ F3 positionInFloats(const CameraModel& camera, std::uint32_t x, std::uint32_t y,
 bool reachesInFloats(const LightModel& light, const Pixel& pixel, F3 position) {
     if (pixel.background || (light.mask & pixel.receiverMask) == 0) return false;
     if (light.type != LightType::Directional) {
-        const F3 v = sub(position, f3(light.position));
-        const float squared = dotF(v, v), range = float(light.rangeMetres);
+        const F3 v = position - f3(light.position);
+        const float squared = dot(v, v), range = float(light.rangeMetres);
         if (squared > range * range) return false;
         if (light.type == LightType::Spot &&
-            dotF(v, f3(light.direction)) < float(std::cos(light.outerAngle)) * std::sqrt(squared))
+            dot(v, f3(light.direction)) < float(std::cos(light.outerAngle)) * std::sqrt(squared))
             return false;
     }
-    if (!light.casts || light.shadowFade < 1.0 || pixel.subsurface) return true;
-    const F3 to = light.type == LightType::Directional ? f3(-light.direction) : sub(f3(light.position), position);
-    return dotF(f3(pixel.faceNormal), to) > 0;
-}
-
-struct F4 {
-    float x, y, z, w;
-};
-F4 projectInFloats(const ShadowViewModel& view, F3 p) {
-    float out[4];
-    for (int row = 0; row < 4; ++row) {
-        const auto& m = view.clipFromWorld.m[row];
-        out[row] = float(m[0]) * p.x + float(m[1]) * p.y + float(m[2]) * p.z + float(m[3]);
-    }
-    return {out[0], out[1], out[2], out[3]};
-}
-
-float filterInFloats(const ShadowInput& input, const ShadowViewModel& view, float px, float py, float device) {
-    const AtlasCopy& atlas = input.atlases[view.atlas];
-    const auto lit = [&](int x, int y) {
-        x = std::clamp(x, view.xPx, view.xPx + view.widthPx - 1);
-        y = std::clamp(y, view.yPx, view.yPx + view.heightPx - 1);
-        const float stored = atlas.at(view.layer, x, y);
-        return (view.reversed ? stored <= device : stored >= device) ? 1.0f : 0.0f;
-    };
-    if (input.filter == ShadowFilter::Hard) return lit(int(std::floor(px)), int(std::floor(py)));
-    const int r = input.pcfRadius;
-    const auto clampPx = [&](float p, int first, int size) {
-        return std::clamp(p, first + r + 1.0f, first + size - r - 1.0f) - 0.5f;
-    };
-    px = clampPx(px, view.xPx, view.widthPx);
-    py = clampPx(py, view.yPx, view.heightPx);
-    const float bx = std::floor(px), by = std::floor(py), fx = px - bx, fy = py - by;
-    float sum = 0;
-    for (int j = -r; j <= r; ++j)
-        for (int i = -r; i <= r; ++i) {  // bilinear comparisons, one by one
-            const int x = int(bx) + i, y = int(by) + j;
-            const float top = lit(x, y) * (1 - fx) + lit(x + 1, y) * fx;
-            const float bottom = lit(x, y + 1) * (1 - fx) + lit(x + 1, y + 1) * fx;
-            sum += top * (1 - fy) + bottom * fy;
-        }
-    return sum / float((2 * r + 1) * (2 * r + 1));
-}
-
-float visibilityInFloats(const LightModel& light, const Pixel& pixel, F3 p, const ShadowInput& input) {
-    const F3 to = sub(f3(light.position), p), n = f3(pixel.faceNormal);
-    const float c = dotF(n, to) / lengthF(to);
-    if (!pixel.subsurface && c <= 0) return 0;
-    std::uint32_t face = 0;
-    if (light.type == LightType::Point) {
-        const F3 v = {-to.x, -to.y, -to.z};
-        const float ax = std::abs(v.x), ay = std::abs(v.y), az = std::abs(v.z);
-        face = ax >= ay && ax >= az ? (v.x >= 0 ? 0 : 1) : ay >= az ? (v.y >= 0 ? 2 : 3) : (v.z >= 0 ? 4 : 5);
-    }
-    const ShadowViewModel& view = input.views[light.firstShadowView + face];
-    const float radius = input.filter == ShadowFilter::Pcf ? float(input.pcfRadius) : 0.0f;
-    const float texel = float(view.texelMetres) * projectInFloats(view, p).w;
-    const F3 axisX = f3(rowOf(view.clipFromWorld, 0)), axisY = f3(rowOf(view.clipFromWorld, 1));
-    const float slant = std::abs(dotF(n, axisX)) / lengthF(axisX) + std::abs(dotF(n, axisY)) / lengthF(axisY);
-    const float offset = texel * (radius + 1.0f) * std::max(slant, 0.1f) * (c >= 0 ? 1.0f : -1.0f);
-    const F4 clip = projectInFloats(view, mad(p, n, offset));
-    if (clip.w <= 0) return 1;
-    float bias = float(light.biasMetres);
-    if (pixel.subsurface) bias = std::max(bias, float(input.subsurfaceBiasMetres));
-    float device = float(view.depth.a) + float(view.depth.b) / std::max(clip.w - bias, 1e-4f);
-    const float slack = 1e-6f * (std::abs(float(view.depth.a)) + std::abs(device - float(view.depth.a)));
-    device += view.reversed ? slack : -slack;
-    const float px = clip.x / clip.w * (0.5f * view.widthPx) + (view.xPx + 0.5f * view.widthPx);
-    const float py = clip.y / clip.w * (0.5f * view.heightPx) + (view.yPx + 0.5f * view.heightPx);
-    return filterInFloats(input, view, px, py, device);
+    if (!light.casts || light.shadowFades || pixel.subsurface) return true;
+    const F3 to = light.type == LightType::Directional ? f3(-light.direction) : f3(light.position) - position;
+    return dot(f3(pixel.faceNormal), to) > 0;
 }
 
 struct Totals {
@@ -148,9 +67,7 @@ void compareFrame(TestFrame& frame, Totals& totals) {
                 ASSERT_TRUE(verdict == Verdict::May || reached == (verdict == Verdict::Must)) << frame.setup.name;
                 if (!light.casts || inInfluence(light, pixel) == Verdict::Never) continue;
                 const StoredVisibility stored = storedVisibility(light, pixel, frame.shadows);
-                const float v = visibilityInFloats(light, pixel, p, frame.shadows);
-                const float faded = 1.0f - float(light.shadowFade) * (1.0f - v);
-                const int q = int(std::floor(255.0f * std::sqrt(std::clamp(faded, 0.0f, 1.0f)) + 0.5f));
+                const int q = storedInFloats(light, pixel, p, f3(frame.model.eye), frame.shadows);
                 ++totals.shadowPairs;
                 totals.ambiguous += stored.ambiguous();
                 totals.loose += stored.max - stored.min > 1;
@@ -161,27 +78,41 @@ void compareFrame(TestFrame& frame, Totals& totals) {
     }
 }
 
+struct FilterCase {
+    ShadowFilter filter;
+    int pcfRadius;
+    PcssTapCounts taps;
+    std::uint32_t visibilityBits;
+    double mostAmbiguous, mostLoose;  // shares of (pixel, light) pairs
+};
+
 TEST(FloatErrors, PlainFloatsStayWithinTheMargins) {
-    for (const ShadowFilter filter : {ShadowFilter::Hard, ShadowFilter::Pcf}) {
-        for (int radius = 1; radius <= (filter == ShadowFilter::Pcf ? 3 : 1); ++radius) {
-            Totals totals;
-            for (std::uint64_t seed = 200; seed < 230; ++seed) {
-                TestFrame frame = makeTestFrame(seed, 48, 40, 25);
-                frame.shadows.filter = filter;
-                frame.shadows.pcfRadius = radius;
-                compareFrame(frame, totals);
-                if (HasFatalFailure()) return;
-            }
-            EXPECT_GT(totals.shadowPairs, 20000u);
-            // The margins are not so wide that they hide errors.
-            EXPECT_LT(totals.may, totals.pairs / 500);
-            // Most of what is left are cameras with standard Z, whose far pixels are known to no better than the bias.
-            EXPECT_LT(totals.ambiguous, totals.shadowPairs / 10);
-            EXPECT_LT(totals.loose, totals.shadowPairs / 12);
-            std::printf("radius %d: may %.4f %%, ambiguous %.3f %%, by more than one step %.3f %%\n", radius,
-                        100.0 * totals.may / totals.pairs, 100.0 * totals.ambiguous / totals.shadowPairs,
-                        100.0 * totals.loose / totals.shadowPairs);
+    // Most of what is left are cameras with standard Z, whose far pixels are known to no better than the bias.
+    const FilterCase cases[] = {
+        {ShadowFilter::Hard, 1, {}, 8, 0.1, 0.1},       {ShadowFilter::Pcf, 1, {}, 8, 0.1, 0.1},
+        {ShadowFilter::Pcf, 2, {}, 8, 0.1, 0.1},        {ShadowFilter::Pcf, 3, {}, 8, 0.1, 0.1},
+        {ShadowFilter::Pcss, 1, {16, 24}, 8, 0.1, 0.1}, {ShadowFilter::Pcss, 1, {8, 12}, 8, 0.1, 0.1},
+        {ShadowFilter::Pcss, 1, {1, 1}, 4, 0.1, 0.1},   {ShadowFilter::Pcss, 1, {32, 64}, 4, 0.1, 0.1}};
+    for (const FilterCase& filter : cases) {
+        Totals totals;
+        for (std::uint64_t seed = 200; seed < 220; ++seed) {
+            TestFrame frame = makeTestFrame(seed, 40, 32, 25, nullptr, seed % 4);
+            frame.shadows.filter = filter.filter;
+            frame.shadows.pcfRadius = filter.pcfRadius;
+            frame.shadows.pcssTaps = filter.taps;
+            frame.shadows.visibilityBits = filter.visibilityBits;
+            frame.shadows.patternTurn = static_cast<std::uint32_t>(seed) * 2654435769u;
+            compareFrame(frame, totals);
+            if (HasFatalFailure()) return;
         }
+        EXPECT_GT(totals.shadowPairs, 20000u);
+        // The margins are not so wide that they hide errors.
+        EXPECT_LT(totals.may, totals.pairs / 500);
+        EXPECT_LT(totals.ambiguous, totals.shadowPairs * filter.mostAmbiguous);
+        EXPECT_LT(totals.loose, totals.shadowPairs * filter.mostLoose);
+        std::printf("may %.4f %%, ambiguous %.3f %%, by more than one step %.3f %%\n",
+                    100.0 * totals.may / totals.pairs, 100.0 * totals.ambiguous / totals.shadowPairs,
+                    100.0 * totals.loose / totals.shadowPairs);
     }
 }
 

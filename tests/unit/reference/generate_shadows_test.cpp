@@ -28,7 +28,8 @@ TEST(ShadowViews, Projection) {
     view.yPx = 20;
     view.widthPx = view.heightPx = 64;
     const ShadowViewModel model = makeShadowViewModels(std::span(&view, 1))[0];
-    EXPECT_NEAR(model.texelMetres, 2.0 / 64, 1e-8);
+    EXPECT_NEAR(model.pxPerMetreX, 32, 1e-5);
+    EXPECT_NEAR(model.pxPerMetreY, 32, 1e-5);
     // 4 m below, 1 m along +z, which is a quarter of the half-width further down.
     const ShadowPosition at = project(model, {0, 1, 1}, 1e-6);
     EXPECT_NEAR(at.linearDepth, 4, 1e-6);
@@ -53,7 +54,15 @@ struct HandMade {
             for (std::uint32_t x = 2; x < 10; ++x) atlas.at(0, x, y) = x < 6 ? 0.5f : 0.0f;
     }
     Visibility at(ShadowFilter filter, int radius, double x, double y, double errorPx = 0) const {
-        return filterAt(view, atlas, filter, radius, x, y, errorPx, 0.25, 1e-6);
+        return against(filter, radius, x, y, errorPx, 0.25);
+    }
+    /// A receiver that faces the view, at this device depth.
+    Visibility against(ShadowFilter filter, int radius, double x, double y, double errorPx, double depth) const {
+        ReceiverPlane plane;
+        plane.depth = within(depth, 1e-6);
+        const Comparison comparison = {view, atlas, plane};
+        if (filter == ShadowFilter::Hard) return hardAt(comparison, within(x, errorPx), within(y, errorPx));
+        return pcfAt(comparison, radius, within(x, errorPx), within(y, errorPx));
     }
 };
 
@@ -67,16 +76,16 @@ TEST(Filter, HardTakesTheTexel) {
     EXPECT_EQ(m.at(ShadowFilter::Hard, 0, 50, 4).min, 1);  // clamped to the rectangle's last texel
     EXPECT_EQ(m.at(ShadowFilter::Hard, 0, -50, -50).max, 0);
     // Equal within the error: ambiguous.
-    EXPECT_EQ(filterAt(m.view, m.atlas, ShadowFilter::Hard, 0, 3, 3, 0, 0.5, 1e-6).max, 1);
-    EXPECT_EQ(filterAt(m.view, m.atlas, ShadowFilter::Hard, 0, 3, 3, 0, 0.5, 1e-6).min, 0);
-    EXPECT_EQ(filterAt(m.view, m.atlas, ShadowFilter::Hard, 0, 3, 3, 0, 0.501, 1e-6).min, 1);
+    EXPECT_EQ(m.against(ShadowFilter::Hard, 0, 3, 3, 0, 0.5).max, 1);
+    EXPECT_EQ(m.against(ShadowFilter::Hard, 0, 3, 3, 0, 0.5).min, 0);
+    EXPECT_EQ(m.against(ShadowFilter::Hard, 0, 3, 3, 0, 0.501).min, 1);
 }
 
 TEST(Filter, StandardDepthComparesTheOtherWay) {
     HandMade m;
     m.view.reversed = false;
-    EXPECT_EQ(filterAt(m.view, m.atlas, ShadowFilter::Hard, 0, 3, 3, 0, 0.25, 1e-6).min, 1);  // 0.5 is farther
-    EXPECT_EQ(filterAt(m.view, m.atlas, ShadowFilter::Hard, 0, 8, 3, 0, 0.25, 1e-6).max, 0);  // 0.0 is nearer
+    EXPECT_EQ(m.against(ShadowFilter::Hard, 0, 3, 3, 0, 0.25).min, 1);  // 0.5 is farther
+    EXPECT_EQ(m.against(ShadowFilter::Hard, 0, 8, 3, 0, 0.25).max, 0);  // 0.0 is nearer
 }
 
 TEST(Filter, PcfIsAMeanOfBilinearComparisons) {
@@ -259,7 +268,7 @@ TEST(GenerateShadows, SubsurfaceBiasReachesThroughThinWalls) {
 }
 
 struct FinalLists : testing::Test {
-    TestFrame frame = makeTestFrame(8, 260, 140, 40);
+    TestFrame frame = makeTestFrame(23, 260, 140, 40);
     std::vector<TileLights> expected = findLights(frame.grid, frame.lights, true);
     HonestBuffers honest = makeHonestBuffers(frame, expected);
     ShadowReport check(const HonestBuffers& buffers, bool mayEvaluate = false) const {
@@ -282,7 +291,7 @@ TEST_F(FinalLists, PlantedErrorsAreFound) {
     std::uint32_t* entry = spoilt.findEntry(true);
     ASSERT_NE(entry, nullptr);
     const std::uint32_t light = gpu::finalLightIndex(*entry), slot = gpu::finalSlotOrFlag(*entry);
-    for (std::uint32_t w = 0; w < gpu::kVisibilitySlotWords; ++w) spoilt.visibility[slot * 16 + w] ^= 0x80808080u;
+    for (std::uint32_t w = 0; w < 16; ++w) spoilt.visibility[slot * 16 + w] ^= 0x80808080u;
     EXPECT_GE(check(spoilt).wrongBytes, 1u);
     spoilt = honest;
     entry = spoilt.findEntry(true);
@@ -310,7 +319,7 @@ TEST_F(FinalLists, PlantedErrorsAreFound) {
 TEST_F(FinalLists, LaneOrderMatters) {
     HonestBuffers spoilt = honest;
     for (std::uint32_t slot = 0; slot < spoilt.slots; ++slot) {
-        std::uint32_t rows[gpu::kVisibilitySlotWords] = {};
+        std::uint32_t rows[16] = {};
         for (std::uint32_t y = 0; y < 8; ++y)
             for (std::uint32_t x = 0; x < 8; ++x)
                 rows[(y * 8 + x) / 4] |= std::uint32_t(storedVisibility(honest.view(), slot, x, y)) << (8 * (x % 4));

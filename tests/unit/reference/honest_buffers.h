@@ -26,7 +26,7 @@ struct TestFrame {
 };
 
 inline TestFrame makeTestFrame(std::uint64_t seed, std::uint32_t widthPx, std::uint32_t heightPx,
-                               std::uint32_t lightCount, const CameraSetup* setup = nullptr) {
+                               std::uint32_t lightCount, const CameraSetup* setup = nullptr, std::uint32_t suns = 0) {
     TestFrame frame;
     Random random(seed);
     frame.setup = setup ? *setup : randomCamera(random);
@@ -36,9 +36,11 @@ inline TestFrame makeTestFrame(std::uint64_t seed, std::uint32_t widthPx, std::u
     LightSetup lightSetup;
     lightSetup.count = lightCount;
     lightSetup.spreadMetres = 8;
+    lightSetup.suns = suns;
     frame.hostLights = makeLights(random, frame.setup, lightSetup);
     ShadowSetup shadowSetup;
     shadowSetup.viewSizePx = 32;
+    shadowSetup.mixDepthKinds = suns > 0;
     TestShadows shadows = buildShadows(frame.shapes, frame.hostLights, shadowSetup);
     frame.shadows.views = makeShadowViewModels(shadows.views);
     frame.shadows.atlases = std::move(shadows.atlases);
@@ -54,6 +56,7 @@ struct HonestBuffers {
     std::vector<std::uint32_t> groupMasks;
     std::uint32_t tilesX = 0, tilesY = 0;
     std::uint32_t slots = 0;
+    std::uint32_t visibilityBits = 8;
 
     [[nodiscard]] ListBuffers view() const {
         ListBuffers buffers;
@@ -68,6 +71,7 @@ struct HonestBuffers {
         buffers.visibility = visibility;
         buffers.listEntries = static_cast<std::uint32_t>(finalList.size());
         buffers.visibilitySlots = slots;
+        buffers.visibilityBits = visibilityBits;
         return buffers;
     }
     /// The first final entry that is a slot, or the first that is a flag; null if there is none.
@@ -99,18 +103,19 @@ inline void fillTile(HonestBuffers& out, const TestFrame& frame, std::uint32_t t
         const LightModel& light = frame.lights[listed[e]];
         casting += light.casts;
         out.earlyList[gpu::earlyWordIndex(slotId, e)] |= listed[e] << (gpu::kLightIndexBits * (e % 3));
-        std::uint32_t slot[gpu::kVisibilitySlotWords] = {};
+        const std::uint32_t bits = frame.shadows.visibilityBits, perWord = 32 / bits;
+        std::vector<std::uint32_t> slot(gpu::visibilitySlotWords(bits));
         bool dark = true, lit = true;
         for (const auto [x, y] : frame.grid.tilePixels(tileX, tileY)) {
             if (inInfluence(light, frame.grid.at(x, y)) == Verdict::Never) continue;
             const std::uint32_t q = storedVisibility(light, frame.grid.at(x, y), frame.shadows).max;
             dark = dark && q == 0;
-            lit = lit && q == 255;
+            lit = lit && q == gpu::visibilityLevels(bits);
             const std::uint32_t lane = gpu::mortonLane(x % 8, y % 8);
-            slot[lane / 4] |= q << (8 * (lane % 4));
+            slot[lane / perWord] |= q << (bits * (lane % perWord));
         }
         if (dark) continue;
-        if (!lit) out.visibility.insert(out.visibility.end(), slot, slot + gpu::kVisibilitySlotWords);
+        if (!lit) out.visibility.insert(out.visibility.end(), slot.begin(), slot.end());
         out.finalList[slotId + entries++] = gpu::packFinalEntry(listed[e], lit ? gpu::kSlotAllLit : out.slots++);
     }
     out.earlyCounts.push_back(static_cast<std::uint32_t>(listed.size()) | casting << gpu::kEarlyCastingShift);
@@ -119,6 +124,7 @@ inline void fillTile(HonestBuffers& out, const TestFrame& frame, std::uint32_t t
 
 inline HonestBuffers makeHonestBuffers(const TestFrame& frame, const std::vector<TileLights>& expected) {
     HonestBuffers out;
+    out.visibilityBits = frame.shadows.visibilityBits;
     out.tilesX = frame.grid.tilesX;
     out.tilesY = frame.grid.tilesY;
     out.groupMasks.resize(std::size_t(frame.grid.groupsX) * frame.grid.groupsY * gpu::kLightMaskEntryWords);

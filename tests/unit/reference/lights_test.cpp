@@ -36,7 +36,12 @@ gpu::GpuLight toGpu(const LightModel& light, const CameraModel& camera) {
     out.cosOuter = light.type == LightType::Spot ? float(std::cos(light.outerAngle)) : -2.0f;
     out.sinOuter = light.type == LightType::Spot ? float(std::sin(light.outerAngle)) : 0.0f;
     out.positionVs.z = float(viewDepth(camera, light.position));
-    out.typeAndFlags = std::uint32_t(light.type) | (light.casts ? gpu::kLightCastsBit : 0u);
+    if (light.type == LightType::Directional)
+        out.positionVs = {float(light.shadowFadeScale), float(light.shadowFadeOffset), 0.0f};
+    out.sourceRadius = float(light.sourceRadius);
+    out.typeAndFlags = std::uint32_t(light.type) | (light.casts ? gpu::kLightCastsBit : 0u) |
+                       (light.shadowFades ? gpu::kLightShadowFadesBit : 0u) |
+                       light.cascadeCount << gpu::kLightCascadesShift;
     out.lightMask = light.mask;
     out.shadowView = light.firstShadowView;
     out.hostIndex = light.hostIndex;
@@ -50,7 +55,9 @@ TEST(Lights, GpuLightsAreCompared) {
     Random random(5);
     const CameraSetup setup = randomCamera(random);
     const CameraModel camera = makeCameraModel(makeCamera(setup, 64, 64), 64, 64);
-    const std::vector<Light> host = makeLights(random, setup, {});
+    std::vector<Light> host = makeLights(random, setup, {.suns = 3});
+    host.back().shadowFadeStartMetres = 10;
+    host.back().shadowFadeEndMetres = 15;
     const std::vector<LightModel> all = makeLightModels(host, camera);
     std::vector<gpu::GpuLight> gpuLights;
     for (std::size_t i = all.size(); i-- > 0;) gpuLights.push_back(toGpu(all[i], camera));
@@ -58,11 +65,11 @@ TEST(Lights, GpuLightsAreCompared) {
     const std::vector<LightModel> ordered = orderLights(all, gpuLights);
     EXPECT_EQ(ordered.front().hostIndex, all.back().hostIndex);
 
-    const auto errorsAfter = [&](auto change) {
+    const auto errorsAfter = [&](auto change, std::uint32_t type = gpu::kLightSpot) {
         std::vector<gpu::GpuLight> spoilt = gpuLights;
         for (gpu::GpuLight& light : spoilt)
-            if ((light.typeAndFlags & gpu::kLightTypeMask) == gpu::kLightSpot &&
-                (light.typeAndFlags & gpu::kLightCastsBit) != 0 && light.shadowFade > 0.1f) {
+            if ((light.typeAndFlags & gpu::kLightTypeMask) == type && (light.typeAndFlags & gpu::kLightCastsBit) != 0 &&
+                light.shadowFade > 0.1f) {
                 change(light);
                 break;
             }
@@ -77,6 +84,13 @@ TEST(Lights, GpuLightsAreCompared) {
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.lightMask ^= 1; }), 1u);
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.biasMetres *= 2; }), 1u);
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.hostIndex = 5000; }), 1u);
+    EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.sourceRadius += 0.001f; }), 1u);
+    EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.typeAndFlags ^= gpu::kLightShadowFadesBit; }), 1u);
+    constexpr std::uint32_t kSun = gpu::kLightDirectional;
+    EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.sourceRadius *= 1.001f; }, kSun), 1u);  // the angle, not its tangent
+    EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.typeAndFlags ^= 7u << gpu::kLightCascadesShift; }, kSun), 1u);
+    EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.typeAndFlags ^= gpu::kLightShadowFadesBit; }, kSun), 1u);
+    EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.positionVs.y += 0.1f; }, kSun), 1u);
     gpuLights[0] = gpuLights[1];
     EXPECT_EQ(checkGpuLights(all, camera, gpuLights).errors, 1u);
 }

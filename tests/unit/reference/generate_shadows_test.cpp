@@ -133,6 +133,34 @@ TEST(Quantised, SquareRootAndFade) {
     EXPECT_EQ(quantised({0.5, 0.5}, 1).max, 180);
     EXPECT_EQ(quantised({0, 0}, 0).min, 255);
     EXPECT_EQ(quantised({0, 0}, 0.5).min, 180);
+    EXPECT_EQ(quantised({1, 1}, 1, 15).min, 15);
+    EXPECT_EQ(quantised({0.5, 0.5}, 1, 15).min, 11);  // 10.6
+    EXPECT_EQ(quantised({0.5, 0.5}, 1, 15).max, 11);
+    EXPECT_EQ(quantised({0, 0}, Interval(0.5, 1), 15).min, 0);
+    EXPECT_EQ(quantised({0, 0}, Interval(0.5, 1), 15).max, 11);
+}
+
+// A directional light's shadow fades with the distance of eye and pixel.
+TEST(Quantised, FadeByPixel) {
+    Light sun;
+    sun.type = LightType::Directional;
+    sun.firstShadowView = 0;
+    sun.cascadeCount = 1;
+    sun.shadowFadeStartMetres = 10;
+    sun.shadowFadeEndMetres = 20;
+    const CameraSetup setup;
+    const LightModel model = makeLightModels(std::span(&sun, 1), makeCameraModel(makeCamera(setup, 64, 64), 64, 64))[0];
+    EXPECT_TRUE(model.casts);
+    EXPECT_TRUE(model.shadowFades);
+    const auto at = [&](double distance) {
+        Pixel pixel;
+        pixel.eyeDistance = distance;
+        return shadowFadeAt(model, pixel);
+    };
+    EXPECT_EQ(at(9).lo, 1.0);
+    EXPECT_NEAR(at(12.5).middle(), 0.75, 1e-9);
+    EXPECT_LT(at(12.5).width(), 1e-5);
+    EXPECT_EQ(at(21).hi, 0.0);
 }
 
 /// A floor at y = 0, a lamp above it, a ball between them.
@@ -313,6 +341,22 @@ TEST_F(FinalLists, PlantedErrorsAreFound) {
             break;
         }
     EXPECT_EQ(check(spoilt).findings.errors, 1u);
+}
+
+TEST_F(FinalLists, SlotsOfFourBits) {
+    for (const ShadowFilter filter : {ShadowFilter::Pcf, ShadowFilter::Pcss}) {
+        frame.shadows.filter = filter;
+        frame.shadows.visibilityBits = 4;
+        HonestBuffers half = makeHonestBuffers(frame, expected);
+        EXPECT_EQ(half.visibility.size(), std::size_t(half.slots) * 8);
+        const ShadowReport report = check(half);
+        EXPECT_TRUE(report.findings.ok()) << report.findings.text();
+        EXPECT_GT(report.exactBytes, 500u);
+        for (std::uint32_t& word : half.visibility) word = word << 4 | word >> 28;  // the neighbour's value
+        EXPECT_GT(check(half).wrongBytes, 20u);
+        half.visibilityBits = 8;
+        EXPECT_FALSE(check(half).findings.ok());
+    }
 }
 
 // Bytes in another order than Morton lanes are found.

@@ -159,6 +159,12 @@ FrameDesc Rig::frameDesc(const FrameInput& input) {
     frame.view.viewportYPx = input.viewportYPx;
     frame.view.lights = input.lights;
     if (shadows_ != nullptr) frame.shadowViews = shadows_->views;
+    if (shadows_ != nullptr && !input.shadowViewsChanged) {
+        unchangedViews_ = shadows_->views;
+        for (ShadowView& view : unchangedViews_) view.changed = false;
+        frame.shadowViews = unchangedViews_;
+    }
+    frame.shadowBounds = input.shadowBounds;
     frame.depth.view = depth_.view();
     if (!input.receivers.faceNormals.empty()) frame.faceNormals.view = faceNormals_.view();
     if (!input.receivers.receiverFlags.empty()) frame.receiverFlags.view = receiverFlags_.view();
@@ -172,6 +178,7 @@ FrameDesc Rig::frameDesc(const FrameInput& input) {
 
 Result Rig::begin(const FrameInput& input, PrepareReport* report) {
     const Result begun = view_->beginFrame(frameDesc(input), report);
+    shadowBounds_ = input.shadowBounds;
     if (begun) ++nextFrame_;
     return begun;
 }
@@ -213,6 +220,7 @@ void Rig::recordPhases(VkCommandBuffer commands, const RunOptions& options) cons
     view_->recordHierarchicalDepth(commands);
     view_->recordFindLightsApproximate(commands);
     view_->recordFindLightsAccurate(commands);
+    if (shadowBounds_) view_->recordShadowBounds(commands);
     if (options.shadows) view_->recordGenerateShadows(commands);
     if (options.endFrame) view_->recordEndFrame(commands);
 }

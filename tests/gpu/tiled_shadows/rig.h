@@ -28,6 +28,8 @@ struct FrameInput {
     bool dropLightsFacedAway = true;
     float subsurfaceBiasMetres = 0.02f;
     bool patternPerFrame = false;
+    bool shadowBounds = false;            ///< made before phase 4
+    bool shadowViewsChanged = true;       ///< what the host says of all its shadow views
     std::vector<float> depthPyramid;  ///< with ContextSetup::hostDepthPyramid: min and max device depth per shadow tile
 };
 
@@ -102,6 +104,8 @@ private:
     std::vector<ShadowAtlas> atlasDescs_;
     std::shared_ptr<const reference::TestShadows> shadows_;  // those in atlases_
     bool atlasesUploaded_ = false;
+    std::vector<ShadowView> unchangedViews_;  // of the frame begun, where they are said to be so
+    bool shadowBounds_ = false;               // in the frame begun
     std::vector<renderer::Buffer> staging_;
     struct Range {
         std::string name;

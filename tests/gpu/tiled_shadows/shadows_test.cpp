@@ -79,7 +79,8 @@ TEST_P(ShadowsTest, RandomRooms) {
         setup.shadows.viewSizePx = 12 + random.below(60);
         setup.shadows.infiniteFar = random.chance(0.5);
         setup.shadows.borderTexels = random.below(4);
-        const FrameInput input = makeRoomFrame(setup);
+        FrameInput input = makeRoomFrame(setup);
+        input.shadowBounds = seed % 2 != 0;
         const PcssTaps presets[] = {kPcssLow, kPcssMedium, kPcssHigh};
         Rig rig(device(), {.filter = Filter::Pcss, .pcss = presets[seed % 3], .visibilityBits = seed % 2 == 0 ? 4u : 8u},
                 viewDescFor(input));
@@ -93,6 +94,36 @@ TEST_P(ShadowsTest, RandomRooms) {
     EXPECT_LT(double(ambiguous), 0.1 * double(pairs));
     std::printf("    %llu rooms: pairs %zu ambiguous %.4f loose %.4f\n", static_cast<unsigned long long>(seeds), pairs,
                 double(ambiguous) / double(pairs), double(loose) / double(pairs));
+}
+
+// Bounds of the shadowmaps spare searches, and change nothing: fresh ones, kept ones, and those of other shadowmaps.
+TEST_P(ShadowsTest, ShadowBounds) {
+    RoomSetup setup{.seed = 12, .widthPx = 72, .heightPx = 48};
+    setup.lights = {.count = 12, .castingShare = 1, .maxRangeMetres = 9, .spreadMetres = 5, .suns = 2};
+    setup.lights.maxSourceRadius = 0.4;
+    setup.shadows = {.viewSizePx = 90, .mixDepthKinds = true};
+    FrameInput input = makeRoomFrame(setup);
+    Rig plain(device(), {.filter = Filter::Pcss}, viewDescFor(input));
+    Rig bounded(device(), {.filter = Filter::Pcss}, viewDescFor(input));
+    ASSERT_TRUE(plain.ok() && bounded.ok());
+    for (const bool changed : {true, false}) {
+        input.shadowBounds = false;
+        const FrameResult result = plain.run(input);
+        if (changed) checkFrame(input, result);
+        input.shadowBounds = true;
+        input.shadowViewsChanged = changed;
+        EXPECT_EQ(decodeFinalLists(result), decodeFinalLists(bounded.run(input))) << "changed " << changed;
+    }
+    reference::Random random(setup.seed + 1);
+    const reference::Shapes others = reference::makeRoom(random, 4);
+    auto shadows = std::make_shared<reference::TestShadows>(*input.shadows);
+    for (const ShadowView& view : shadows->views) reference::renderShadowView(others, view, shadows->atlases[view.atlas]);
+    input.shadows = shadows;
+    input.shadowViewsChanged = true;
+    const FrameResult result = bounded.run(input);
+    checkFrame(input, result);
+    input.shadowBounds = false;
+    EXPECT_EQ(decodeFinalLists(result), decodeFinalLists(plain.run(input)));
 }
 
 // Finite far planes, standard depth, four atlases, the smallest rectangles.

@@ -28,7 +28,7 @@ TEST(Refusal, TheFakeIsAccepted) {
     const Result result = Context::create(vulkan.desc(), context);
     ASSERT_TRUE(result) << result.message();
     EXPECT_EQ(context->subgroupSize(), 32u);
-    EXPECT_EQ(vulkan.pipelines.size(), 5u);
+    EXPECT_EQ(vulkan.pipelines.size(), 6u);
     EXPECT_GT(vulkan.made, vulkan.destroyed);
     context.reset();
     EXPECT_EQ(vulkan.made, vulkan.destroyed);

@@ -48,7 +48,16 @@ std::vector<MemberLayout> gpuShadowView() {
             MEMBER(GpuShadowView, rectMaxPx),        MEMBER(GpuShadowView, depthFromLinearA),
             MEMBER(GpuShadowView, depthFromLinearB), MEMBER(GpuShadowView, flags),
             MEMBER(GpuShadowView, atlasAndLayer),    MEMBER(GpuShadowView, pxPerMetre),
-            MEMBER(GpuShadowView, atlasPerTexel)};
+            MEMBER(GpuShadowView, atlasPerTexel),    MEMBER(GpuShadowView, boundsFirst),
+            MEMBER(GpuShadowView, boundsRow),        MEMBER(GpuShadowView, boundsBlocks),
+            MEMBER(GpuShadowView, reserved)};
+}
+
+std::vector<MemberLayout> gpuShadowBoundsCell() {
+    return {MEMBER(GpuShadowBoundsCell, atlasAndLayer),  MEMBER(GpuShadowBoundsCell, cellX),
+            MEMBER(GpuShadowBoundsCell, cellY),          MEMBER(GpuShadowBoundsCell, first),
+            MEMBER(GpuShadowBoundsCell, row),            MEMBER(GpuShadowBoundsCell, blocks),
+            MEMBER(GpuShadowBoundsCell, atlasPerTexelX), MEMBER(GpuShadowBoundsCell, atlasPerTexelY)};
 }
 
 std::vector<MemberLayout> gpuFrame() {
@@ -110,6 +119,9 @@ const std::map<Key, std::vector<PartLayout>>& blocks() {
          {structAt(0, gpuEvaluateHead()), arrayAt(sizeof(GpuEvaluateHead), 4, {memberAt<uint>(0)})}},
         {{kListsSet, kBindCounters}, {structAt(0, gpuCounters())}},
         {{kShadowmapsSet, kBindShadowViews}, {arrayAt(0, sizeof(GpuShadowView), gpuShadowView())}},
+        {{kShadowmapsSet, kBindShadowBounds}, {arrayAt(0, 8, {memberAt<vec2>(0)})}},
+        {{kShadowmapsSet, kBindShadowBoundsCells},
+         {arrayAt(0, sizeof(GpuShadowBoundsCell), gpuShadowBoundsCell())}},
         {{kHostSet, 5}, {arrayAt(0, sizeof(HostLight), hostLight())}},
         {{kHostSet, 6}, {structAt(0, sceneConstants())}},
     };
@@ -178,8 +190,8 @@ std::string differences(const std::vector<PartLayout>& shader, const std::vector
 TEST(ShaderInterface, AllShadersAreSeen) {
     std::vector<std::string> names;
     for (const ShaderLayout& shader : libraryAndLighting()) names.push_back(shader.name);
-    for (const char* name : {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "generate_shadows",
-                             "gather_statistics", "lighting_deferred", "lighting_evaluate", "lighting_inline"}) {
+    for (const char* name : {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "shadow_bounds",
+                             "generate_shadows", "gather_statistics", "lighting_deferred", "lighting_evaluate", "lighting_inline"}) {
         EXPECT_NE(std::ranges::find(names, name), names.end()) << name;
     }
 }
@@ -209,6 +221,7 @@ TEST(ShaderInterface, TablesCoverTheStructures) {
     };
     EXPECT_EQ(bytes(gpuLight()), sizeof(GpuLight));
     EXPECT_EQ(bytes(gpuShadowView()), sizeof(GpuShadowView));
+    EXPECT_EQ(bytes(gpuShadowBoundsCell()), sizeof(GpuShadowBoundsCell));
     EXPECT_EQ(bytes(gpuFrame()), sizeof(GpuFrame));
     EXPECT_EQ(bytes(gpuCounters()), sizeof(GpuCounters));
     EXPECT_EQ(bytes(gpuEvaluateHead()), sizeof(GpuEvaluateHead));
@@ -288,7 +301,8 @@ TEST(ShaderInterface, MainLightingSeesNoShadowmap) {
     for (const char* name : {"lighting_evaluate", "lighting_inline", "generate_shadows"}) {
         const std::optional<ShaderLayout> shader = shaderNamed(name);
         ASSERT_TRUE(shader) << name;
-        EXPECT_EQ(resourcesIn(*shader, kShadowmapsSet), kShadowmapsBindingCount) << name;
+        // All but the list of cells, which is for making the bounds.
+        EXPECT_EQ(resourcesIn(*shader, kShadowmapsSet), kShadowmapsBindingCount - 1) << name;
     }
     for (const char* name : {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "gather_statistics"}) {
         const std::optional<ShaderLayout> shader = shaderNamed(name);
@@ -350,7 +364,7 @@ TEST(ShaderInterface, PipelinesGetTheConstants) {
     expected[kSpecVisibilityBits] = 4;
     expected[kSpecShadowAtlases] = 2;
     EXPECT_TRUE(std::ranges::equal(context->specializationValues(), expected));
-    ASSERT_EQ(vulkan.pipelines.size(), 5u);
+    ASSERT_EQ(vulkan.pipelines.size(), 6u);
     for (const FakeVulkan::Pipeline& pipeline : vulkan.pipelines) {
         EXPECT_EQ(pipeline.constants, expected);
         EXPECT_EQ(pipeline.requiredSubgroupSize, 64u);

@@ -272,6 +272,7 @@ TEST_F(ShadowCacheTest, RendererFollowsTime) {
         desc.widthPx = 160;
         desc.heightPx = 96;
         desc.atlasSizePx = 512;
+        desc.filter = Filter::Hard;
         Renderer kept(device, scene, desc);
         for (double seconds : {0.0, 0.25, 0.5, 0.75}) kept.renderFrame(scene.cameras[0], ShadowMode::Deferred, seconds);
         const std::vector<float> moving = kept.readPicture().rgba;

@@ -62,14 +62,19 @@ void skin(const Primitive& primitive, PosedPrimitive& out) {
 
 }  // namespace
 
-void deformPrimitive(const Primitive& primitive, PosedPrimitive& out) {
+bool deformPrimitive(const Primitive& primitive, PosedPrimitive& out) {
     out.positions = primitive.positions;
     out.normals = primitive.normals;
     out.tangents = primitive.tangents;
     morph(primitive, out);
     if (!out.objectFromMesh.empty() && !primitive.joints.empty()) skin(primitive, out);
     out.bounds = Bounds();
-    for (const glm::vec3& p : out.positions) out.bounds.add(p);
+    bool near = true;
+    for (const glm::vec3& p : out.positions) {
+        out.bounds.add(p);
+        near = near && glm::length(p) < kFarthestUnits;
+    }
+    return near;
 }
 
 }  // namespace gnomon::renderer

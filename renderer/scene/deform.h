@@ -5,7 +5,8 @@
 
 namespace gnomon::renderer {
 
-/// Vertices from out.weights (as many as targets, or fewer) and out.objectFromMesh (none: not skinned).
-void deformPrimitive(const Primitive& primitive, PosedPrimitive& out);
+/// Vertices from out.weights (as many as targets, or fewer) and out.objectFromMesh (none: not skinned). False where one
+/// is thrown kFarthestUnits away or more.
+[[nodiscard]] bool deformPrimitive(const Primitive& primitive, PosedPrimitive& out);
 
 }  // namespace gnomon::renderer

@@ -18,7 +18,6 @@ namespace {
 // What deforms is copied per node that places it; this bounds what a small file can ask for (2 GiB of vertices).
 constexpr std::size_t kMaxDeformedVertices = 1u << 25;
 constexpr std::size_t kMaxVertices = 1u << 28;
-constexpr float kFarthest = 1.0e15f;
 
 class SceneBuilder {
 public:
@@ -85,7 +84,7 @@ private:
         std::vector<float> out;
         for (double weight : weights) {
             out.push_back(toFloat(weight, "a weight of " + user));
-            if (!(std::abs(out.back()) < kFarthest)) refuse("{} has a weight of {}", user, weight);
+            if (!(std::abs(out.back()) < kFarthestUnits)) refuse("{} has a weight of {}", user, weight);
         }
         return out;
     }
@@ -149,7 +148,7 @@ private:
             for (int corner = 0; corner < 8; ++corner) {
                 const glm::vec3 p(corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y,
                                   corner & 4 ? b.max.z : b.min.z);
-                if (!(glm::length(glm::vec3(worldFromObject * glm::vec4(p, 1.0f))) < kFarthest))
+                if (!(glm::length(glm::vec3(worldFromObject * glm::vec4(p, 1.0f))) < kFarthestUnits))
                     refuse("{} is placed beyond 1e15 units from the origin", user);
             }
         }
@@ -220,12 +219,7 @@ private:
     // Everything later takes for granted that the scene at rest is within a float's range.
     void checkRestPose() {
         try {
-            const Pose rest = restPose(scene_);
-            for (const PosedPrimitive& posed : rest.deformed)
-                for (const glm::vec3& p : posed.positions)
-                    if (!(glm::length(p) < kFarthest))
-                        refuse("instance '{}' is posed beyond 1e15 units from the origin",
-                               scene_.instances[posed.instance].name.substr(0, 60));
+            (void)restPose(scene_);
         } catch (const PoseError& error) {
             std::string sentence = error.what();
             sentence.pop_back();

@@ -12,8 +12,6 @@
 namespace gnomon::renderer {
 namespace {
 
-constexpr double kFarthest = 1.0e15;  // beyond, squared lengths overflow a float
-
 bool isSingular(const glm::dmat4& m) {
     return !(std::abs(glm::determinant(glm::dmat3(m))) > 1.0e-30);
 }
@@ -31,9 +29,9 @@ std::vector<glm::dmat4> worldTransforms(const std::vector<Node>& nodes, double t
         world[i] = localTransform(nodes[i]);
         if (nodes[i].parent != kNone) world[i] = world[nodes[i].parent] * world[i];
         for (int k = 0; k < 16; ++k)
-            if (!(std::abs(world[i][k / 4][k % 4]) < kFarthest))
+            if (!(std::abs(world[i][k / 4][k % 4]) < static_cast<double>(kFarthestUnits)))
                 throw PoseError(fmt::format("The node '{}' is thrown beyond {:g} units from the origin at {:g} s.",
-                                            nodes[i].name.substr(0, 60), kFarthest, timeSeconds));
+                                            nodes[i].name.substr(0, 60), kFarthestUnits, timeSeconds));
     }
     return world;
 }
@@ -138,7 +136,9 @@ void deform(const Scene& scene, const std::vector<Node>& nodes, Pose& pose) {
             posed.primitive = p;
             posed.objectFromMesh = joints;
             posed.weights = std::move(weights);
-            deformPrimitive(primitive, posed);
+            if (!deformPrimitive(primitive, posed))
+                throw PoseError(fmt::format("A vertex of '{}' is thrown beyond {:g} units from the origin at {:g} s.",
+                                            instance.name.substr(0, 60), kFarthestUnits, pose.timeSeconds));
         }
     }
     pose.deformed.resize(slot);

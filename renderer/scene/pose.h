@@ -17,6 +17,9 @@ namespace gnomon::renderer {
 /// A float step is 0.06 mm within 1 km.
 inline constexpr double kAnchorGridMetres = 1024.0;
 
+/// From any origin; beyond, squared lengths overflow a float.
+inline constexpr float kFarthestUnits = 1.0e15f;
+
 /// Vertices of one primitive of one instance, in the space of Pose::worldFromObject. Same counts as the primitive's.
 struct PosedPrimitive {
     std::uint32_t instance = 0, primitive = 0;
@@ -36,7 +39,7 @@ struct Pose {
     std::vector<SceneLight> lights;           ///< all of the scene's
 };
 
-/// An animation throws a node out of the range of a float: one sentence.
+/// An animation throws a node or a vertex too far: one sentence.
 struct PoseError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

@@ -1,6 +1,7 @@
 // Which shadow views are drawn again when something moves, and that a kept view shows what a fresh one would.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 #include <set>
@@ -271,6 +272,7 @@ TEST_F(ShadowCacheTest, RendererFollowsTime) {
         desc.widthPx = 160;
         desc.heightPx = 96;
         desc.atlasSizePx = 512;
+        desc.filter = Filter::Hard;
         Renderer kept(device, scene, desc);
         for (double seconds : {0.0, 0.25, 0.5, 0.75}) kept.renderFrame(scene.cameras[0], ShadowMode::Deferred, seconds);
         const std::vector<float> moving = kept.readPicture().rgba;
@@ -300,6 +302,55 @@ TEST_F(ShadowCacheTest, RendererFollowsTime) {
         const std::vector<std::uint32_t> ridden = riders.readTriangleIds();
         riders.renderFrame(placed, ShadowMode::Deferred, 1.0);
         EXPECT_EQ(ridden, riders.readTriangleIds());
+    }
+    expectNoMessages();
+}
+
+std::size_t differingPixels(const std::vector<float>& a, const std::vector<float>& b) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.size(); i += 4) {
+        float difference = 0.0f;
+        for (std::size_t c = 0; c < 3; ++c)
+            difference = std::max(difference, std::abs(a[i + c] - b[i + c]) / (1e-3f + std::max(a[i + c], b[i + c])));
+        count += difference > 0.02f ? 1 : 0;
+    }
+    return count;
+}
+
+// A moment of an animation looks like a still scene of that moment. The slab is thrown far out of the scene's bounds
+// for so short a time that nobody who looks ahead finds it, and still it takes the sun away.
+TEST_F(ShadowCacheTest, AMomentLooksLikeAStillScene) {
+    for (const DeviceInfo& info : suitable()) {
+        SCOPED_TRACE(info.name);
+        const Device device(instance(), info);
+        Scene scene = animatedScene();
+        scene.meshes[1].primitives[0] = square(4.0f);
+        AnimationChannel& leap = scene.animations[0].channels[0];
+        leap.interpolation = AnimationChannel::Interpolation::Step;
+        leap.times = {0.0f, 0.26f, 0.27f};
+        leap.values = {0, 0, 0, 0, 0, 5, 0, 0, 0};
+        for (std::size_t k = 0; k < 3; ++k) leap.values[3 * k + 1] = k == 1 ? 80.0f : -5.0f;
+        scene.lights.push_back({"sun", LightKind::Directional});
+        scene.lights.back().direction = {0, -1, 0};
+        scene.lights.back().intensity = 5.0f;
+        scene.lights.back().sourceRadius = 0.001f;
+        SceneCamera camera;
+        camera.worldFromCamera = glm::inverse(glm::lookAt(glm::vec3(0, 20, 30), glm::vec3(0), glm::vec3(0, 1, 0)));
+        RendererDesc desc;
+        desc.widthPx = 160;
+        desc.heightPx = 96;
+        desc.atlasSizePx = 2048;
+        desc.filter = Filter::Hard;
+        Renderer moving(device, scene, desc);
+        moving.renderFrame(camera, ShadowMode::Deferred, 0.1);
+        const std::vector<float> before = moving.readPicture().rgba;
+        moving.renderFrame(camera, ShadowMode::Deferred, 0.265);
+        const std::vector<float> picture = moving.readPicture().rgba;
+        Renderer still(device, posedScene(scene, poseAt(scene, 0.265)), desc);
+        still.renderFrame(camera, ShadowMode::Deferred);
+        EXPECT_GT(differingPixels(before, picture), 150u);                   // the shadow of the slab
+        EXPECT_LT(differingPixels(picture, still.readPicture().rgba), 60u);  // its edges: other cascades
+        EXPECT_EQ(moving.readTriangleIds(), still.readTriangleIds());
     }
     expectNoMessages();
 }

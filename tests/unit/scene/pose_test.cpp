@@ -298,6 +298,15 @@ TEST(Pose, ThrownTooFarIsSaid) {
     } catch (const PoseError& error) {
         EXPECT_NE(std::string(error.what()).find("'rocket'"), std::string::npos) << error.what();
     }
+    Scene face = withNodes(1);
+    face.meshes.push_back({"face", {triangle()}, {}});
+    face.meshes[0].primitives[0].targets = {{{{1e14f, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {}, {}}};
+    face.instances.push_back({"face", 0, glm::mat4(1.0f), 0});
+    play(face, {channel(0, Path::Weights, {0, 1}, {1, 1e14f})});
+    EXPECT_NO_THROW((void)poseAt(face, 0.0));
+    EXPECT_THROW((void)poseAt(face, 0.5), PoseError);
+    face.animations[0].channels[0].values[1] = 3e38f;  // overflows to infinity
+    EXPECT_THROW((void)poseAt(face, 0.5), PoseError);
 }
 
 TEST(Pose, AlternativesStandBy) {

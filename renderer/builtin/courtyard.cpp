@@ -120,14 +120,11 @@ void makeMaterials(Parts& parts) {
                textured(b, "cloth blue", paintStripes(256, {0.10f, 0.22f, 0.50f}, cream)),
                textured(b, "cloth ochre", paintStripes(256, {0.78f, 0.50f, 0.12f}, {0.45f, 0.12f, 0.10f})),
                textured(b, "cloth green", paintStripes(256, {0.12f, 0.36f, 0.24f}, cream))};
-    for (const std::uint32_t cloth : m.cloth) b.scene.materials[cloth].doubleSided = true;
+    for (const std::uint32_t cloth : m.cloth)
+        b.scene.materials[cloth].doubleSided = b.scene.materials[cloth].subsurface = true;
 }
 
-}  // namespace
-}  // namespace courtyard
-
-static Scene makeCourtyard(const char* name, courtyard::Hour hour) {
-    using namespace courtyard;
+Scene build(const char* name, Hour hour) {
     Parts parts;
     parts.builder.scene.name = name;
     parts.hour = hour;
@@ -162,14 +159,17 @@ static Scene makeCourtyard(const char* name, courtyard::Hour hour) {
     return std::move(b.scene);
 }
 
+}  // namespace
+}  // namespace courtyard
+
 Scene makeCourtyardNight() {
-    return makeCourtyard("courtyard", courtyard::Hour::Night);
+    return courtyard::build("courtyard", courtyard::Hour::Night);
 }
 Scene makeCourtyardDay() {
-    return makeCourtyard("courtyard-day", courtyard::Hour::Day);
+    return courtyard::build("courtyard-day", courtyard::Hour::Day);
 }
 Scene makeCourtyardBench() {
-    return makeCourtyard("courtyard-bench", courtyard::Hour::Bench);
+    return courtyard::build("courtyard-bench", courtyard::Hour::Bench);
 }
 
 }  // namespace gnomon::renderer

@@ -283,7 +283,7 @@ void addChild(Parts& parts) {
     addFigure(parts, "child", look, 216, [&](float at) {
         Pose pose;
         Gait gait{2.0f, 0.40f, 0.24f, 0.75f, 0.16f};
-        const float phase = follow(pose, path, at + 0.55f, gait, 0.0f, 0.64f);
+        const float phase = follow(pose, path, at + 0.61f, gait, 0.0f, 0.64f);
         walk(pose, gait, phase);
         return pose;
     });

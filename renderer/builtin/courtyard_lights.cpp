@@ -13,7 +13,7 @@ namespace {
 const glm::vec3 kWarm(1.0f, 0.56f, 0.24f), kAmber(1.0f, 0.46f, 0.15f), kCool(0.45f, 0.68f, 1.0f),
     kTeal(0.25f, 0.85f, 0.9f), kRose(1.0f, 0.30f, 0.34f), kGold(1.0f, 0.70f, 0.32f);
 
-constexpr float kBenchReach = 0.66f;  // of the night's ranges: gives 3 shadowed lights per tile, the moon among them
+constexpr float kBenchReach = 0.63f;  // of the night's ranges: gives 3 shadowed lights per tile, the moon among them
 
 SceneLight& addPoint(Parts& parts, const char* name, const glm::vec3& at, const glm::vec3& colour, float candela,
                      float range, float sourceRadius) {
@@ -95,7 +95,7 @@ void addGalleryLanterns(Parts& parts) {
 
 void addPostLanterns(Parts& parts) {
     const std::uint32_t mesh = standingLantern(parts, 2.7f, 0.05f);
-    for (const glm::vec2& p : {glm::vec2(6.1f, 2.5f), {-8.9f, 5.0f}, {6.5f, -6.4f}, {-6.9f, -4.2f}}) {
+    for (const glm::vec2& p : {glm::vec2(6.1f, 2.5f), {0.6f, 6.9f}, {6.5f, -6.4f}, {-6.9f, -4.2f}}) {
         const glm::vec3 at(p.x, 2.7f, p.y);
         parts.builder.place(mesh, placed(at));
         addPoint(parts, "post lantern", at, kWarm, 46.0f, 7.5f, 0.015f);
@@ -170,7 +170,7 @@ void addFestoons(Parts& parts) {
     const std::uint32_t iron = hangingLantern(parts, chain);
     const std::uint32_t gold = paperLantern(parts, m.paper[0], cord), rose = paperLantern(parts, m.paper[1], cord),
                         teal = paperLantern(parts, m.paper[2], cord);
-    Festoon west(parts, -5.2f), middle(parts, 2.6f), east(parts, 9.1f);
+    Festoon west(parts, -5.2f), middle(parts, 2.6f), east(parts, 11.7f);
     west.lanterns(iron, 0.25f + chain, {-1.4f}, kWarm, 45.0f, 8.0f, 0.015f);
     west.lanterns(rose, drop, {1.6f}, kRose, 26.0f, 6.0f, 0.12f);
     west.lanterns(gold, drop, {5.4f}, kGold, 34.0f, 6.5f, 0.12f);

@@ -275,7 +275,7 @@ void addWatcher(Parts& parts) {
     look.shawl = true;
     addFigure(parts, "watcher", look, 60, [](float at) {
         Pose pose;
-        standAt(pose, {-4.55f, kGallery, -9.60f}, 0.22f);
+        standAt(pose, {-7.15f, kGallery, -9.60f}, 0.22f);
         idle(pose, at, 0.6f);
         pose.rotation[kHips] = about(kX, 0.16f) * pose.rotation[kHips];
         pose.translation[kHips].z -= 0.05f;

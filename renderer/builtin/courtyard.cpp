@@ -80,6 +80,7 @@ void makeLivingMaterials(Parts& parts) {
     const glm::vec3 hair[] = {{0.09f, 0.05f, 0.03f}, {0.03f, 0.025f, 0.022f}, {0.55f, 0.53f, 0.50f}};
     const std::uint32_t glow = b.image(paintPaperGlow(128));
     const glm::vec3 paper[] = {{0.95f, 0.80f, 0.50f}, {0.95f, 0.45f, 0.40f}, {0.50f, 0.85f, 0.85f}};
+    m.candle = plain(b, "wax", {0.80f, 0.72f, 0.55f}, 0.6f);
     m.leather = plain(b, "leather", {0.06f, 0.035f, 0.02f}, 0.5f);
     for (std::size_t i = 0; i < 3; ++i) {
         m.paper[i] = plain(b, "paper", paper[i], 0.9f);

@@ -13,7 +13,7 @@ namespace {
 const glm::vec3 kWarm(1.0f, 0.56f, 0.24f), kAmber(1.0f, 0.46f, 0.15f), kCool(0.45f, 0.68f, 1.0f),
     kTeal(0.25f, 0.85f, 0.9f), kRose(1.0f, 0.30f, 0.34f), kGold(1.0f, 0.70f, 0.32f);
 
-constexpr float kBenchReach = 0.63f;  // of the night's ranges: gives 3 shadowed lights per tile, the moon among them
+constexpr float kBenchReach = 0.615f;  // of the night's ranges: gives 3 shadowed lights per tile, the moon among them
 
 SceneLight& addPoint(Parts& parts, const char* name, const glm::vec3& at, const glm::vec3& colour, float candela,
                      float range, float sourceRadius) {
@@ -120,6 +120,22 @@ void addWallLamps(Parts& parts) {
             }
         }
     }
+}
+
+// On the fountain's upper step, and at the feet of every other column, on the side of the court.
+void addCandles(Parts& parts) {
+    const std::uint32_t mesh = thickCandle(parts);
+    const auto put = [&](const glm::vec3& at, float candela, float range) {
+        parts.builder.place(mesh, placed(at, at.x));
+        addPoint(parts, "candle", at, kAmber, candela, range, 0.01f);
+    };
+    for (int i = 0; i < 8; ++i) {
+        const float a = 0.785398f * static_cast<float>(i);
+        put({2.47f * std::cos(a), 0.32f + 0.152f, 2.47f * std::sin(a)}, 2.0f, 2.4f);
+    }
+    for (const Side& side : parts.sides)
+        for (int bay = 2; bay < side.bays; bay += 2)
+            put(inWorld(side, {-side.halfLength + kBay * static_cast<float>(bay) + 0.42f, 0.152f, 0.72f}), 3.2f, 2.8f);
 }
 
 // A rope between the galleries with small bulbs; `at` and `hang` put lanterns and banners along z.
@@ -233,6 +249,7 @@ void addLights(Parts& parts) {
     addGalleryLanterns(parts);
     addPostLanterns(parts);
     addWallLamps(parts);
+    addCandles(parts);
     addFestoons(parts);
     addSpots(parts);
     addOtherLights(parts);

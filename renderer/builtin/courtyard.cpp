@@ -80,6 +80,7 @@ void makeLivingMaterials(Parts& parts) {
     const glm::vec3 hair[] = {{0.09f, 0.05f, 0.03f}, {0.03f, 0.025f, 0.022f}, {0.55f, 0.53f, 0.50f}};
     const std::uint32_t glow = b.image(paintPaperGlow(128));
     const glm::vec3 paper[] = {{0.95f, 0.80f, 0.50f}, {0.95f, 0.45f, 0.40f}, {0.50f, 0.85f, 0.85f}};
+    m.candle = plain(b, "wax", {0.80f, 0.72f, 0.55f}, 0.6f);
     m.leather = plain(b, "leather", {0.06f, 0.035f, 0.02f}, 0.5f);
     for (std::size_t i = 0; i < 3; ++i) {
         m.paper[i] = plain(b, "paper", paper[i], 0.9f);
@@ -120,14 +121,11 @@ void makeMaterials(Parts& parts) {
                textured(b, "cloth blue", paintStripes(256, {0.10f, 0.22f, 0.50f}, cream)),
                textured(b, "cloth ochre", paintStripes(256, {0.78f, 0.50f, 0.12f}, {0.45f, 0.12f, 0.10f})),
                textured(b, "cloth green", paintStripes(256, {0.12f, 0.36f, 0.24f}, cream))};
-    for (const std::uint32_t cloth : m.cloth) b.scene.materials[cloth].doubleSided = true;
+    for (const std::uint32_t cloth : m.cloth)
+        b.scene.materials[cloth].doubleSided = b.scene.materials[cloth].subsurface = true;
 }
 
-}  // namespace
-}  // namespace courtyard
-
-static Scene makeCourtyard(const char* name, courtyard::Hour hour) {
-    using namespace courtyard;
+Scene build(const char* name, Hour hour) {
     Parts parts;
     parts.builder.scene.name = name;
     parts.hour = hour;
@@ -162,14 +160,17 @@ static Scene makeCourtyard(const char* name, courtyard::Hour hour) {
     return std::move(b.scene);
 }
 
+}  // namespace
+}  // namespace courtyard
+
 Scene makeCourtyardNight() {
-    return makeCourtyard("courtyard", courtyard::Hour::Night);
+    return courtyard::build("courtyard", courtyard::Hour::Night);
 }
 Scene makeCourtyardDay() {
-    return makeCourtyard("courtyard-day", courtyard::Hour::Day);
+    return courtyard::build("courtyard-day", courtyard::Hour::Day);
 }
 Scene makeCourtyardBench() {
-    return makeCourtyard("courtyard-bench", courtyard::Hour::Bench);
+    return courtyard::build("courtyard-bench", courtyard::Hour::Bench);
 }
 
 }  // namespace gnomon::renderer

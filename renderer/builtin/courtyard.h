@@ -39,7 +39,8 @@ enum class Hour { Night, Day, Bench };
 struct Materials {
     std::uint32_t stone, trim, plaster, cobbles, flags, wood, darkWood, clay, tiles, iron, rope, glow, coolGlow, water,
         spray, bronze;
-    std::uint32_t soil, bark, leaves, ivy, blossom, frond, orange, straw, fur, feather, sheetIron, pierced, leather;
+    std::uint32_t soil, bark, leaves, ivy, blossom, frond, orange, straw, fur, feather, sheetIron, pierced, leather,
+        candle;
     std::array<std::uint32_t, 4> cloth;
     std::array<std::uint32_t, 6> wear;  // plain cloth for clothes
     std::array<std::uint32_t, 3> skin, hair, paper;

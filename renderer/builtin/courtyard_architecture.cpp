@@ -93,8 +93,8 @@ std::uint32_t railingMesh(Parts& parts) {
 
 void addArcades(Parts& parts) {
     ShapeBuilder lower(parts.materials.stone), upper(parts.materials.trim);
-    lower.arch({kBay, kSpringing, 4.25f, 1.05f, 0.5f, 18, 0.16f, 0.05f});
-    upper.arch({0.5f * kBay, kUpperSpringing, 7.48f, 0.51f, 0.26f, 10, 0.09f, 0.03f});
+    lower.arch({kBay, kSpringing, 4.25f, 1.05f, 0.5f, 24, 0.16f, 0.05f});
+    upper.arch({0.5f * kBay, kUpperSpringing, 7.48f, 0.51f, 0.26f, 18, 0.09f, 0.03f});
     const std::uint32_t lowerArch = parts.builder.mesh("arch", {lower.take()});
     const std::uint32_t upperArch = parts.builder.mesh("gallery arch", {upper.take()});
     const std::uint32_t lowerColumn = lowerColumnMesh(parts), upperColumn = upperColumnMesh(parts);

@@ -133,7 +133,7 @@ std::uint32_t parasolMesh(Parts& parts) {
 void addLadyWithParasol(Parts& parts) {
     const Materials& m = parts.materials;
     const ClosedPath path(
-        {{-7.9f, 3.1f}, {-6.6f, 2.4f}, {-5.1f, 2.9f}, {-4.6f, 4.1f}, {-5.3f, 5.2f}, {-6.9f, 5.4f}, {-8.0f, 4.5f}});
+        {{-6.6f, 2.7f}, {-5.6f, 2.3f}, {-4.4f, 3.0f}, {-3.7f, 4.2f}, {-4.3f, 5.3f}, {-5.7f, 5.5f}, {-6.7f, 4.3f}});
     Look look{m.wear[1], m.wear[3], m.skin[0], m.hair[0], m.leather, m.straw};
     look.shawl = true;
     const std::uint32_t first = addFigure(parts, "lady with a parasol", look, 120, [&](float at) {
@@ -268,6 +268,26 @@ void addTalkers(Parts& parts) {
     });
 }
 
+// Leans on the gallery's rail and looks down into the court.
+void addWatcher(Parts& parts) {
+    const Materials& m = parts.materials;
+    Look look{m.wear[4], m.wear[3], m.skin[1], m.hair[0], m.leather, m.straw};
+    look.shawl = true;
+    addFigure(parts, "watcher", look, 60, [](float at) {
+        Pose pose;
+        standAt(pose, {-7.15f, kGallery, -9.60f}, 0.22f);
+        idle(pose, at, 0.6f);
+        pose.rotation[kHips] = about(kX, 0.16f) * pose.rotation[kHips];
+        pose.translation[kHips].z -= 0.05f;
+        stand(pose, -0.10f, -0.04f);
+        pose.rotation[kChest] = about(kX, 0.14f) * pose.rotation[kChest];
+        pose.rotation[kHead] = about(kY, 0.55f * wave(at, 1)) * about(kX, 0.02f + 0.08f * wave(at, 2));
+        reachWith(pose, true, {0.20f, 1.01f, 0.40f}, {1.0f, -0.3f, -0.6f});
+        reachWith(pose, false, {-0.20f, 1.01f, 0.44f}, {-1.0f, -0.3f, -0.6f});
+        return pose;
+    });
+}
+
 // Runs around the fountain.
 void addChild(Parts& parts) {
     const Materials& m = parts.materials;
@@ -283,7 +303,7 @@ void addChild(Parts& parts) {
     addFigure(parts, "child", look, 216, [&](float at) {
         Pose pose;
         Gait gait{2.0f, 0.40f, 0.24f, 0.75f, 0.16f};
-        const float phase = follow(pose, path, at + 0.55f, gait, 0.0f, 0.64f);
+        const float phase = follow(pose, path, at + 0.61f, gait, 0.0f, 0.64f);
         walk(pose, gait, phase);
         return pose;
     });
@@ -298,6 +318,7 @@ void addFigures(Parts& parts) {
     addSleeper(parts);
     addMerchant(parts);
     addTalkers(parts);
+    addWatcher(parts);
     addChild(parts);
 }
 

@@ -121,6 +121,18 @@ std::uint32_t drumChain(Parts& parts, float length) {
     return parts.builder.mesh("drum's chain", {iron.take(), bulb.take()});
 }
 
+std::uint32_t thickCandle(Parts& parts) {
+    ShapeBuilder dish(parts.materials.clay), wax(parts.materials.candle), flame(parts.materials.glow);
+    const glm::vec2 bowl[] = {
+        {0.06f, -0.152f}, {0.085f, -0.125f}, {0.078f, -0.125f}, {0.055f, -0.143f}, {0.0f, -0.143f}};
+    dish.lathe(bowl, 14);
+    const glm::vec2 body[] = {{0.04f, -0.145f}, {0.04f, -0.085f}, {0.032f, -0.08f}, {0.0f, -0.082f}};
+    wax.lathe(body, 14);
+    const glm::vec2 tongue[] = {{0.004f, -0.085f}, {0.009f, -0.072f}, {0.006f, -0.055f}, {0.0f, -0.042f}};
+    flame.lathe(tongue, 8);
+    return parts.builder.mesh("candle", {dish.take(), wax.take(), flame.take()});
+}
+
 std::uint32_t wallLamp(Parts& parts) {
     ShapeBuilder iron(parts.materials.iron), bulb(parts.materials.glow);
     iron.box({-0.05f, 0.02f, -0.32f}, {0.05f, 0.22f, -0.28f});

@@ -15,6 +15,8 @@ std::uint32_t paperLantern(Parts& parts, std::uint32_t paper, float cordLength);
 /// A drum of pierced brass, and the chain that it turns on.
 std::uint32_t piercedDrum(Parts& parts);
 std::uint32_t drumChain(Parts& parts, float length);
+/// Stands 15 cm below the light.
+std::uint32_t thickCandle(Parts& parts);
 /// Sits on a wall behind the light, at z = -0.3.
 std::uint32_t wallLamp(Parts& parts);
 /// Throws its light along -z.

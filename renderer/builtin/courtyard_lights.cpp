@@ -13,7 +13,7 @@ namespace {
 const glm::vec3 kWarm(1.0f, 0.56f, 0.24f), kAmber(1.0f, 0.46f, 0.15f), kCool(0.45f, 0.68f, 1.0f),
     kTeal(0.25f, 0.85f, 0.9f), kRose(1.0f, 0.30f, 0.34f), kGold(1.0f, 0.70f, 0.32f);
 
-constexpr float kBenchReach = 0.66f;  // of the night's ranges: gives 3 shadowed lights per tile, the moon among them
+constexpr float kBenchReach = 0.615f;  // of the night's ranges: gives 3 shadowed lights per tile, the moon among them
 
 SceneLight& addPoint(Parts& parts, const char* name, const glm::vec3& at, const glm::vec3& colour, float candela,
                      float range, float sourceRadius) {
@@ -95,7 +95,7 @@ void addGalleryLanterns(Parts& parts) {
 
 void addPostLanterns(Parts& parts) {
     const std::uint32_t mesh = standingLantern(parts, 2.7f, 0.05f);
-    for (const glm::vec2& p : {glm::vec2(6.1f, 2.5f), {-8.9f, 5.0f}, {6.5f, -6.4f}, {-6.9f, -4.2f}}) {
+    for (const glm::vec2& p : {glm::vec2(6.1f, 2.5f), {0.6f, 6.9f}, {6.5f, -6.4f}, {-6.9f, -4.2f}}) {
         const glm::vec3 at(p.x, 2.7f, p.y);
         parts.builder.place(mesh, placed(at));
         addPoint(parts, "post lantern", at, kWarm, 46.0f, 7.5f, 0.015f);
@@ -120,6 +120,22 @@ void addWallLamps(Parts& parts) {
             }
         }
     }
+}
+
+// On the fountain's upper step, and at the feet of every other column, on the side of the court.
+void addCandles(Parts& parts) {
+    const std::uint32_t mesh = thickCandle(parts);
+    const auto put = [&](const glm::vec3& at, float candela, float range) {
+        parts.builder.place(mesh, placed(at, at.x));
+        addPoint(parts, "candle", at, kAmber, candela, range, 0.01f);
+    };
+    for (int i = 0; i < 8; ++i) {
+        const float a = 0.785398f * static_cast<float>(i);
+        put({2.47f * std::cos(a), 0.32f + 0.152f, 2.47f * std::sin(a)}, 2.0f, 2.4f);
+    }
+    for (const Side& side : parts.sides)
+        for (int bay = 2; bay < side.bays; bay += 2)
+            put(inWorld(side, {-side.halfLength + kBay * static_cast<float>(bay) + 0.42f, 0.152f, 0.72f}), 3.2f, 2.8f);
 }
 
 // A rope between the galleries with small bulbs; `at` and `hang` put lanterns and banners along z.
@@ -170,7 +186,7 @@ void addFestoons(Parts& parts) {
     const std::uint32_t iron = hangingLantern(parts, chain);
     const std::uint32_t gold = paperLantern(parts, m.paper[0], cord), rose = paperLantern(parts, m.paper[1], cord),
                         teal = paperLantern(parts, m.paper[2], cord);
-    Festoon west(parts, -5.2f), middle(parts, 2.6f), east(parts, 9.1f);
+    Festoon west(parts, -5.2f), middle(parts, 2.6f), east(parts, 11.7f);
     west.lanterns(iron, 0.25f + chain, {-1.4f}, kWarm, 45.0f, 8.0f, 0.015f);
     west.lanterns(rose, drop, {1.6f}, kRose, 26.0f, 6.0f, 0.12f);
     west.lanterns(gold, drop, {5.4f}, kGold, 34.0f, 6.5f, 0.12f);
@@ -233,6 +249,7 @@ void addLights(Parts& parts) {
     addGalleryLanterns(parts);
     addPostLanterns(parts);
     addWallLamps(parts);
+    addCandles(parts);
     addFestoons(parts);
     addSpots(parts);
     addOtherLights(parts);

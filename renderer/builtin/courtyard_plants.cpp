@@ -165,22 +165,37 @@ std::uint32_t ivyMesh(Parts& parts) {
     return parts.builder.mesh("ivy", {cards.take()});
 }
 
-// Bougainvillea over one bay's gallery railing: a mound on the rail, curtains of blossom below it.
+// Bougainvillea over one bay's gallery railing: vines that bow outwards from the rail and hang down the wall,
+// their blossom in bunches along them.
 std::uint32_t hangingBlossomMesh(Parts& parts, std::uint64_t seed) {
     Random random(seed);
-    ShapeBuilder blossom(parts.materials.blossom), leaves(parts.materials.ivy);
-    constexpr float kHalf = 1.25f;
-    for (int i = 0; i < 210; ++i) {
-        const float x = kHalf * (random.unit() + random.unit() - 1.0f);
-        const float drop =
-            (0.95f + 0.5f * std::sin(4.2f * x + static_cast<float>(seed))) * (1.0f - 0.35f * std::abs(x));
-        const float t = std::pow(random.unit(), 1.3f), y = kGallery + 0.98f - t * (0.55f + drop);
-        const glm::vec3 root(x, y, 0.10f + (y < kGallery + 0.1f ? 0.36f : 0.05f) + 0.10f * random.unit());
-        const glm::vec3 outward(0.3f * random.between(-1, 1), 0.35f, 1.0f);
-        const glm::vec3 growth(random.between(-0.6f, 0.6f), random.between(-0.8f, 0.6f), 0.5f);
-        addCard(i % 3 == 0 ? leaves : blossom, random, root, growth, outward, random.between(0.24f, 0.36f));
+    ShapeBuilder blossom(parts.materials.blossom), leaves(parts.materials.ivy), vines(parts.materials.bark);
+    constexpr int kVines = 26, kPoints = 9;
+    for (int i = 0; i < kVines; ++i) {
+        const float across = (static_cast<float>(i) + 0.5f) / kVines * 2.0f - 1.0f, x = 1.12f * across;
+        const float drop = random.between(0.5f, 1.75f) * (1.0f - 0.55f * across * across);
+        const float lean = random.between(-0.16f, 0.16f), bow = random.between(0.34f, 0.44f);
+        glm::vec3 path[kPoints];
+        float radii[kPoints];
+        for (int k = 0; k < kPoints; ++k) {
+            const float t = static_cast<float>(k) / (kPoints - 1);
+            const float out = glm::mix(0.05f, bow, std::min(1.0f, 2.0f * t));
+            path[k] = {x + lean * t + 0.02f * std::sin(9.0f * t + x), kGallery + 0.93f - (0.5f + drop) * t, out};
+            radii[k] = glm::mix(0.006f, 0.003f, t);
+        }
+        vines.branch(path, radii, 4);
+        const int cards = 4 + static_cast<int>(5.0f * drop);
+        for (int c = 0; c < cards; ++c) {
+            const float t = std::pow((static_cast<float>(c) + random.unit()) / static_cast<float>(cards), 0.9f);
+            const auto k = std::min(static_cast<int>(t * (kPoints - 1)), kPoints - 2);
+            const glm::vec3 root = glm::mix(path[k], path[k + 1], t * (kPoints - 1) - static_cast<float>(k));
+            const glm::vec3 outward(0.4f * random.between(-1, 1), 0.35f, 1.0f);
+            const glm::vec3 growth(random.between(-0.7f, 0.7f), random.between(-0.9f, 0.5f) + (t < 0.15f ? 0.5f : 0.0f),
+                                   0.35f);
+            addCard((c + i) % 3 == 0 ? leaves : blossom, random, root, growth, outward, random.between(0.22f, 0.34f));
+        }
     }
-    return parts.builder.mesh("hanging blossom", {blossom.take(), leaves.take()});
+    return parts.builder.mesh("hanging blossom", {blossom.take(), leaves.take(), vines.take()});
 }
 
 void addClimbers(Parts& parts) {

@@ -54,7 +54,9 @@ TileSamples::TileSamples(const TriangleGrid& grid, const TileDensity& view) {
                 const Ray ray = rayThrough(view, static_cast<float>(x) + dx, static_cast<float>(y) + dy);
                 const auto hit = grid.cast(ray.origin, ray.direction, reach);
                 if (!hit) continue;
-                glm::vec3 normal = glm::normalize(grid.triangles()[hit->triangle].areaNormal());
+                const TriangleGrid::Triangle& triangle = grid.triangles()[hit->triangle];
+                glm::vec3 normal(0.0f);
+                if (!triangle.subsurface) normal = glm::normalize(triangle.areaNormal());
                 if (glm::dot(normal, ray.direction) > 0.0f) normal = -normal;
                 tile.pixels.push_back({ray.origin + hit->distance * ray.direction, normal});
                 bounds.add(tile.pixels.back().position);
@@ -72,7 +74,7 @@ bool TileSamples::reaches(const SceneLight& light, const Tile& tile) {
     if (local && glm::length(light.position - tile.centre) > light.rangeMetres + tile.radius) return false;
     for (const Pixel& pixel : tile.pixels) {
         const glm::vec3 to = local ? light.position - pixel.position : -light.direction;
-        if (glm::dot(to, pixel.normal) <= 0.0f) continue;
+        if (pixel.normal != glm::vec3(0.0f) && glm::dot(to, pixel.normal) <= 0.0f) continue;
         if (!local) return true;
         const float distance = glm::length(to);
         if (distance > light.rangeMetres) continue;

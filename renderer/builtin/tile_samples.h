@@ -1,7 +1,7 @@
 #pragma once
 // How many shadowed lights reach a shadow tile of a picture, estimated on the CPU: a few hundred tiles, nine pixels
 // each, by ray casts. A light counts where phase 3 of the library would count it: at least one pixel lies in its range
-// and cone, and looks towards it.
+// and cone, and looks towards it or lets light through.
 
 #include "renderer/builtin/builtin.h"
 #include "renderer/builtin/triangle_grid.h"
@@ -20,7 +20,7 @@ public:
 
 private:
     struct Pixel {
-        glm::vec3 position, normal;  // of the face, towards the camera
+        glm::vec3 position, normal;  // of the face, towards the camera; zero where light comes through
     };
     struct Tile {
         std::vector<Pixel> pixels;

@@ -30,9 +30,10 @@ void addTriangles(const Scene& scene, const glm::mat4& worldFromObject, const Pr
                   const std::vector<glm::vec3>& positions, std::vector<TriangleGrid::Triangle>& triangles) {
     const bool mirrored = glm::determinant(glm::mat3(worldFromObject)) < 0.0f;
     const auto world = [&](std::uint32_t i) { return glm::vec3(worldFromObject * glm::vec4(positions[i], 1.0f)); };
+    const Material& material = scene.materials[primitive.material];
     for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
         TriangleGrid::Triangle t{world(primitive.indices[i]), world(primitive.indices[i + 1]),
-                                 world(primitive.indices[i + 2]), scene.materials[primitive.material].doubleSided};
+                                 world(primitive.indices[i + 2]), material.doubleSided, material.subsurface};
         if (mirrored) std::swap(t.b, t.c);
         const float area = glm::length(t.areaNormal());
         if (area > 0.0f && std::isfinite(area)) triangles.push_back(t);

@@ -12,7 +12,7 @@ class TriangleGrid {
 public:
     struct Triangle {
         glm::vec3 a, b, c;
-        bool doubleSided;
+        bool doubleSided, subsurface;
         [[nodiscard]] glm::vec3 areaNormal() const { return 0.5f * glm::cross(b - a, c - a); }  // length: the area
     };
     struct Hit {

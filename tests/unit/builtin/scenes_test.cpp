@@ -1,6 +1,7 @@
 // Every built-in scene: the same each time, sound geometry, lights in free air, sizes within their limits.
 
 #include "renderer/builtin/builtin.h"
+#include "renderer/builtin/tile_samples.h"
 #include "renderer/builtin/triangle_grid.h"
 
 #include <gtest/gtest.h>
@@ -163,6 +164,13 @@ TEST(BuiltinScenes, CourtyardKeepsItsSize) {
         EXPECT_EQ(scene.cameras.front().name, "overview");
         EXPECT_GE(scene.cameras.size(), 3u);
     }
+}
+
+// What the bench's name promises; the library itself counts 3.02 there.
+TEST(BuiltinScenes, TheBenchHasThreeShadowedLightsPerTile) {
+    const Scene scene = makeBuiltinScene("courtyard-bench").value();
+    const TileDensity picture{3.0f, scene.cameras.front(), 3840, 2160};
+    EXPECT_NEAR(TileSamples(TriangleGrid(scene), picture).meanShadowed(scene.lights), 3.0f, 0.2f);
 }
 
 TEST(BuiltinScenes, SmallScenesAreSmall) {

@@ -335,6 +335,8 @@ void completeFrameConstants(const View::State& state, const FrameDesc& frame, Gp
     if (frame.dropLightsFacedAway) constants.pools.w |= kFrameFacingCullBit;
     constants.shadows.x = frame.subsurfaceBiasMetres;
     constants.random.x = static_cast<std::uint32_t>(frame.frameNumber);
+    constants.random.z = state.context->desc.pcss.searchTaps;
+    constants.random.w = state.context->desc.pcss.filterTaps;
     // Golden ratio: the turns of successive frames fill the circle evenly, however many there are.
     if (frame.patternPerFrame) constants.random.y = constants.random.x * 2654435769u;
 }

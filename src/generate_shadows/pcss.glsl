@@ -18,32 +18,38 @@
 #ifndef GNOMON_GENERATE_SHADOWS_PCSS_GLSL
 #define GNOMON_GENERATE_SHADOWS_PCSS_GLSL
 
+#include "generate_shadows/golden_spiral.glsl"
 #include "generate_shadows/shadowmap.glsl"
 #include "shadow_bounds/shadow_bounds.glsl"
 
+// Loops over taps count to frame.random.z and w, which are the same numbers: a compiler that knew them would unroll the
+// loops, at the cost of registers.
 layout(constant_id = 5) const uint kPcssSearchTaps = 16;
 layout(constant_id = 6) const uint kPcssFilterTaps = 24;
 
 // Nearer blockers are searched for as if they were at this share of the receiver's depth.
 const float kNearestBlocker = 0.1;
-const float kGoldenCosine = -0.7373688780783197;
-const float kGoldenSine = 0.6754902942615238;
+// A texel that touches a tap's bilinear footprint is at most this far aside.
+const float kTapTexels = 1.5;
 
+// Depths here are device depths with the sign that makes greater ones nearer to the light.
 struct PcssKernel {
-    vec2 first;     // direction of the first tap
-    vec2 right;     // texels per tangent (perspective) or per metre, right and down in the disk that the receiver sees
-    vec2 down;
-    float texel;    // one texel in those units
-    float widest;   // radius of the search, without its margin of a texel
-    float radius0;  // radius of the source's disk at device depth d: radius0 + radius1 * d
+    vec2 corner;  // the receiver's place less half a texel: whole numbers there are texels
+    vec2 right;   // texels per tangent (perspective) or per metre, along the pattern's axes, which the pixel turns, in
+    vec2 down;    // the disk that the receiver sees
+    float sign;
+    float depth;  // of the receiver's plane at the receiver,
+    vec2 slope;   // per texel,
+    float least;  // and its least value: at most one texel's slope behind the receiver
+    float texel;     // one texel in the unit of radii
+    float widest;    // radius of the search, without its margin of a texel
+    float radius0;   // radius of the source's disk at depth d: radius0 + radius1 * d, radius1 at least 0
     float radius1;
-    float nearest;  // bounds of the depth that a texel is compared with: at most a texel's slope behind the receiver
-    float farthest;
-    bool cube;      // point light: taps that leave the face look at another
+    bool cube;  // point light: taps that leave the face look at another
 };
 
-// Turned per pixel: 32 bits are a turn. In whole numbers, since every pipeline must have the same.
-vec2 firstDirection(uvec2 pixel) {
+// Cosine and sine. 32 bits are a turn; in whole numbers, since every pipeline must have the same.
+vec2 turnOf(uvec2 pixel) {
     uint turn = pixel.x * 3242174889u + pixel.y * 2447445414u + frame.random.y;
     precise float f = float((turn << 2u) >> 8u) * (1.0 / 16777216.0);
     precise float t = (2.0 * f - 1.0) * 0.41421356;  // tangent of half an angle within 45 degrees
@@ -54,102 +60,98 @@ vec2 firstDirection(uvec2 pixel) {
     return (quadrant & 2u) != 0u ? -d : d;
 }
 
-vec2 nextDirection(vec2 d) {
-    precise vec2 turned = vec2(fma(kGoldenCosine, d.x, -kGoldenSine * d.y), fma(kGoldenSine, d.x, kGoldenCosine * d.y));
-    return turned;
-}
-
 // Off the view's axis the disk, which faces the receiver, is stretched outward.
-void placeDisk(ShadowPoint s, vec2 pxPerUnit, inout PcssKernel k) {
+void placeDisk(ShadowPoint s, vec2 pxPerUnit, vec2 turn, inout PcssKernel k) {
     precise float stretch = 1.0 / (1.0 + rayLength(s.tangent));
-    precise vec2 right = vec2(1.0 + s.tangent.x * s.tangent.x * stretch, s.tangent.x * s.tangent.y * stretch);
-    precise vec2 down = vec2(s.tangent.x * s.tangent.y * stretch, 1.0 + s.tangent.y * s.tangent.y * stretch);
-    precise vec2 rightPx = right * pxPerUnit;
-    precise vec2 downPx = down * pxPerUnit;
-    k.right = rightPx;
-    k.down = downPx;
+    precise vec2 across = s.tangent * stretch;
+    precise vec2 x = vec2(fma(s.tangent.x, across.x, 1.0), s.tangent.x * across.y) * pxPerUnit;
+    precise vec2 y = vec2(s.tangent.x * across.y, fma(s.tangent.y, across.y, 1.0)) * pxPerUnit;
+    precise vec2 right = x * turn.x + y * turn.y;
+    precise vec2 down = y * turn.x - x * turn.y;
+    k.right = right;
+    k.down = down;
 }
 
 PcssKernel pcssKernelOf(GpuLight light, ShadowPoint s, uvec2 pixel) {
-    GpuShadowView view = shadowViews[s.view];
-    precise float a = view.depthFromLinearA;
-    precise float b = view.depthFromLinearB;
+    precise float a = shadowViews[s.view].depthFromLinearA;
+    precise float inverseB = 1.0 / shadowViews[s.view].depthFromLinearB;
+    vec2 pxPerUnit = shadowViews[s.view].pxPerMetre;
     precise float r = light.sourceRadius;
-    precise float near = s.reversedZ ? 1.0 : 0.0;
     PcssKernel k;
+    k.sign = s.reversedZ ? 1.0 : -1.0;
     precise float radius0, radius1, widest;
-    if (isOrthographicView(view)) {
-        radius1 = -r / b;
-        radius0 = r * (s.linear + a / b);
-        widest = max(radius0 + radius1 * near, 0.0);
+    if (isOrthographicView(shadowViews[s.view])) {
+        radius1 = -r * inverseB * k.sign;
+        radius0 = r * (s.linear + a * inverseB);
+        widest = max(s.reversedZ ? radius0 + radius1 : radius0, 0.0);
     } else {
-        radius1 = r / b;
-        radius0 = -r * (a / b) - r / s.linear;
-        widest = r * (1.0 / kNearestBlocker - 1.0) / s.linear;
+        precise float seen = r / s.linear;
+        radius1 = r * inverseB * k.sign;
+        radius0 = -r * (a * inverseB) - seen;
+        widest = (1.0 / kNearestBlocker - 1.0) * seen;
     }
-    precise float texel = 1.0 / max(view.pxPerMetre.x, view.pxPerMetre.y);
+    precise float texel = 1.0 / max(pxPerUnit.x, pxPerUnit.y);
     precise float cut = min(widest, float(kMaxPcssRadiusPx) * texel);
-    precise float limit = abs(s.slope.x) + abs(s.slope.y);
-    precise float behind = s.reversedZ ? s.depth - limit : s.depth + limit;
-    k.first = firstDirection(pixel);
-    placeDisk(s, view.pxPerMetre, k);
+    precise float behind = s.depth * k.sign - (abs(s.slope.x) + abs(s.slope.y));
+    precise vec2 corner = s.px - 0.5;
+    placeDisk(s, pxPerUnit, turnOf(pixel), k);
+    k.corner = corner;
+    k.depth = s.depth * k.sign;
+    k.slope = s.slope * k.sign;
+    k.least = max(behind, s.reversedZ ? 0.0 : -1.0);
     k.texel = texel;
     k.widest = cut;
     k.radius0 = radius0;
     k.radius1 = radius1;
-    k.nearest = s.reversedZ ? clamp(behind, 0.0, 1.0) : 0.0;
-    k.farthest = s.reversedZ ? 1.0 : clamp(behind, 0.0, 1.0);
     k.cube = lightType(light) == kLightPoint;
     return k;
 }
 
-// Where in the atlas a tap lies, from the receiver.
-vec2 tapOffset(PcssKernel k, vec2 direction, float radius) {
-    precise vec2 unit = vec2(fma(k.right.x, direction.x, k.down.x * direction.y),
-                             fma(k.right.y, direction.x, k.down.y * direction.y));
-    precise vec2 offset = unit * radius;
+// Tap `i` at radius 1, in texels from the receiver.
+vec2 tapOffset(PcssKernel k, uint i) {
+    precise vec2 offset = vec2(fma(k.right.x, kGoldenSpiral[i].x, k.down.x * kGoldenSpiral[i].y),
+                               fma(k.right.y, kGoldenSpiral[i].x, k.down.y * kGoldenSpiral[i].y));
     return offset;
 }
 
-// Whether a tap within this radius may need more than its four texels of the rectangle.
+// Half the sides of a box that holds the texels of all taps within a radius.
+vec2 tapExtent(PcssKernel k, float radius) {
+    return radius * (abs(k.right) + abs(k.down)) + kTapTexels;
+}
+
 bool mayLeave(ShadowPoint s, PcssKernel k, float radius) {
-    precise vec2 extent = radius * (abs(k.right) + abs(k.down)) + 1.5;
+    vec2 extent = tapExtent(k, radius);
     return any(lessThan(s.px - extent, s.rectMin)) || any(greaterThan(s.px + extent, s.rectMax));
 }
 
 #include "generate_shadows/point_faces.glsl"
 
-// Four texels around a tap at `px`: their depths, and 1 where the receiver is lit by them. The plane's depth is affine,
-// so it is advanced by the texels' distance from the receiver.
-vec4 tapTexels(ShadowPoint s, PcssKernel k, vec2 px, out vec4 stored, out vec2 f) {
-    precise vec2 corner = px - 0.5;
-    precise vec2 first = floor(corner);
-    precise vec2 fraction = corner - first;
-    f = fraction;
-    precise vec2 away = first + 0.5 - s.px;
-    precise float depth = fma(s.slope.x, away.x, fma(s.slope.y, away.y, s.depth));
-    precise vec4 depths = depth + vec4(s.slope.y, s.slope.x + s.slope.y, s.slope.x, 0.0);
-    stored = gatherShadowTexels(s, first);
-    return litBy(s, clamp(depths, k.nearest, k.farthest), stored);
+// The receiver's plane and the map at the four texels around `corner`, which is a place less half a texel.
+vec4 planeDepthsAt(PcssKernel k, vec2 first) {
+    precise vec2 away = first - k.corner;
+    precise float depth = fma(k.slope.x, away.x, fma(k.slope.y, away.y, k.depth));
+    precise vec4 depths = depth + vec4(k.slope.y, k.slope.x + k.slope.y, k.slope.x, 0.0);
+    return max(depths, vec4(k.least));
 }
 
-// What a search has found: counts of texels, and the sum of the blockers' depths.
+// What a search has found.
 struct Blockers {
-    float occluding;
-    float blocking;
-    float depths;
+    float blocking;  // texels
+    float depths;    // sum over them
+    bool allOcclude;
 };
 
-void countBlockers(PcssKernel k, float radius, vec4 lit, vec4 stored, inout Blockers found) {
-    precise vec4 seen = fma(vec4(k.radius1), stored, vec4(fma(1.5, k.texel, k.radius0)));
-    precise vec4 blocks = mix(1.0 - lit, vec4(0.0), lessThan(seen, vec4(radius)));
-    precise float occluding = found.occluding + (4.0 - ((lit.x + lit.y) + (lit.z + lit.w)));
+// `farthest`: what is stored farther from the light than this is out of the source's sight at the tap's radius.
+void countBlockers(vec4 plane, vec4 stored, float farthest, inout Blockers found) {
+    found.allOcclude = found.allOcclude && all(greaterThan(stored, plane));
+    precise vec4 blocks = vec4(greaterThan(stored, max(plane, vec4(farthest))));
     precise float blocking = found.blocking + ((blocks.x + blocks.y) + (blocks.z + blocks.w));
     precise float depths = fma(blocks.x, stored.x, found.depths);
     depths = fma(blocks.y, stored.y, depths);
     depths = fma(blocks.z, stored.z, depths);
     depths = fma(blocks.w, stored.w, depths);
-    found = Blockers(occluding, blocking, depths);
+    found.blocking = blocking;
+    found.depths = depths;
 }
 
 // What the shadow bounds tell of a search of radius `reach` that stays in the rectangle. True where they tell all. Else
@@ -158,23 +160,22 @@ void countBlockers(PcssKernel k, float radius, vec4 lit, vec4 stored, inout Bloc
 bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, out float needed, out float visibility) {
     needed = reach;
     visibility = 1.0;
-    for (uint i = 0u; i < 3u; ++i) {
-        vec2 extent = needed * (abs(k.right) + abs(k.down)) + 1.5;
+    for (uint i = 0u; i < 2u; ++i) {
+        vec2 extent = tapExtent(k, needed);
         bool known;
         vec2 bounds = shadowBoundsOver(s.view, s.px - extent, s.px + extent, known);
         if (!known) return false;
-        float rise = dot(abs(s.slope), extent);
+        float nearest = s.reversedZ ? bounds.y : -bounds.x;
+        float farthest = s.reversedZ ? bounds.x : -bounds.y;
+        float rise = dot(abs(k.slope), extent);
         float slack = 1e-6 + 1e-5 * rise;  // the taps' own rounding
-        float low = clamp(s.depth - rise - slack, k.nearest, k.farthest);
-        float high = clamp(s.depth + rise + slack, k.nearest, k.farthest);
-        if (s.reversedZ ? bounds.y <= low : bounds.x >= high) return true;
-        if (i == 0u && (s.reversedZ ? bounds.x > high : bounds.y < low)) {
-            visibility = 0.0;
-            return true;
-        }
+        if (nearest <= max(k.depth - rise - slack, k.least)) return true;
+        visibility = 0.0;
+        if (i == 0u && farthest > max(k.depth + rise + slack, k.least)) return true;
+        visibility = 1.0;
         // The region of the source grows toward the light.
-        float seen = fma(k.radius1, s.reversedZ ? bounds.y : bounds.x, k.radius0) + 1.5 * k.texel;
-        seen += 1e-5 * abs(seen) + 1e-6 * (abs(k.radius0) + abs(k.radius1));
+        float seen = fma(k.radius1, nearest, k.radius0) + kTapTexels * k.texel;
+        seen += 1e-5 * abs(seen) + 1e-6 * (abs(k.radius0) + k.radius1);
         if (!(seen < needed)) return false;
         needed = max(seen, 0.0);
     }
@@ -191,47 +192,51 @@ float searchRadius(uint tap, float reach) {
 // stay inside the rectangle, nothing stands between the texture reads.
 float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visibility) {
     precise float reach = k.widest + k.texel;
-    vec2 direction = k.first;
-    Blockers found = Blockers(0.0, 0.0, 0.0);
-    vec4 stored;
-    vec2 f;
+    // A depth is in the source's sight at a radius from (radius - radius0 - margin) / radius1 on.
+    precise float inverse = k.radius1 > 0.0 ? 1.0 / k.radius1 : 0.0;
+    precise float farthest0 = k.radius1 > 0.0 ? -(k.radius0 + kTapTexels * k.texel) * inverse : -2.0;
+    Blockers found = Blockers(0.0, 0.0, true);
     if (!mayLeave(s, k, reach)) {
         float needed;
         if (knownByBounds(s, k, reach, needed, visibility)) return -1.0;
-        for (uint i = 0u; i < kPcssSearchTaps; ++i) {
+        for (uint i = 0u; i < frame.random.z; ++i) {
             float radius = searchRadius(i, reach);
-            // Beyond, there is no blocker; and not all texels occlude.
-            if (radius > needed && found.occluding != 4.0 * float(i)) break;
-            precise vec2 px = s.px + tapOffset(k, direction, radius);
-            vec4 lit = tapTexels(s, k, px, stored, f);
-            countBlockers(k, radius, lit, stored, found);
-            direction = nextDirection(direction);
+            if (radius > needed && !found.allOcclude) break;  // beyond, there is no blocker
+            vec2 offset = tapOffset(k, i);
+            precise vec2 first = floor(fma(offset, vec2(radius), k.corner));
+            vec4 stored = gatherShadowTexels(s, first) * k.sign;
+            countBlockers(planeDepthsAt(k, first), stored, fma(radius, inverse, farthest0), found);
         }
     } else {
-        for (uint i = 0u; i < kPcssSearchTaps; ++i) {
+        for (uint i = 0u; i < frame.random.z; ++i) {
             float radius = searchRadius(i, reach);
-            precise vec2 px = s.px + tapOffset(k, direction, radius);
-            vec4 lit;
-            if (leavesFace(s, k, px)) {
-                float there;
-                lit = vec4(otherFace(light, s, k, px, there));
-                stored = vec4(there);
+            vec2 offset = tapOffset(k, i);
+            precise vec2 corner = fma(offset, vec2(radius), k.corner);
+            vec4 plane, stored;
+            if (leavesFace(s, k, corner)) {
+                float planeThere, storedThere;
+                otherFace(light, s, k, corner + 0.5, planeThere, storedThere);
+                plane = vec4(planeThere);
+                stored = vec4(storedThere);
             } else {
-                lit = tapTexels(s, k, clamp(px, s.rectMin + 1.0, s.rectMax - 1.0), stored, f);
+                precise vec2 first = floor(clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));
+                plane = planeDepthsAt(k, first);
+                stored = gatherShadowTexels(s, first) * k.sign;
             }
-            countBlockers(k, radius, lit, stored, found);
-            direction = nextDirection(direction);
+            countBlockers(plane, stored, fma(radius, inverse, farthest0), found);
         }
     }
-    bool dark = found.occluding == 4.0 * float(kPcssSearchTaps);
-    visibility = dark ? 0.0 : 1.0;
-    if (found.blocking == 0.0 || dark) return -1.0;
+    visibility = found.allOcclude ? 0.0 : 1.0;
+    if (found.blocking == 0.0 || found.allOcclude) return -1.0;
     precise float mean = found.depths / found.blocking;
     precise float radius = clamp(fma(k.radius1, mean, k.radius0), k.texel, max(k.widest, k.texel));
     return radius;
 }
 
-float bilinear(vec4 lit, vec2 f) {
+float filterTap(ShadowPoint s, PcssKernel k, vec2 corner) {
+    precise vec2 first = floor(corner);
+    precise vec2 f = corner - first;
+    vec4 lit = vec4(lessThanEqual(gatherShadowTexels(s, first) * k.sign, planeDepthsAt(k, first)));
     precise float top = fma(f.x, lit.z - lit.w, lit.w);
     precise float bottom = fma(f.x, lit.y - lit.x, lit.x);
     precise float value = fma(f.y, bottom - top, top);
@@ -239,20 +244,19 @@ float bilinear(vec4 lit, vec2 f) {
 }
 
 float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius) {
-    vec2 direction = k.first;
     precise float sum = 0.0;
-    vec4 stored;
-    vec2 f;
     bool inside = !mayLeave(s, k, radius);
-    for (uint i = 0u; i < kPcssFilterTaps; ++i) {
+    for (uint i = 0u; i < frame.random.w; ++i) {
         precise float share = sqrt((float(i) + 0.5) * (1.0 / float(kPcssFilterTaps)));
-        precise vec2 px = s.px + tapOffset(k, direction, share * radius);
-        direction = nextDirection(direction);
-        if (!inside && leavesFace(s, k, px)) {
-            sum += otherFace(light, s, k, px, stored.x);
+        precise float away = share * radius;
+        vec2 offset = tapOffset(k, i);
+        precise vec2 corner = fma(offset, vec2(away), k.corner);
+        if (!inside && leavesFace(s, k, corner)) {
+            float plane, stored;
+            otherFace(light, s, k, corner + 0.5, plane, stored);
+            sum += stored > plane ? 0.0 : 1.0;
         } else {
-            vec4 lit = tapTexels(s, k, clamp(px, s.rectMin + 1.0, s.rectMax - 1.0), stored, f);
-            sum += bilinear(lit, f);
+            sum += filterTap(s, k, clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));
         }
     }
     precise float visibility = sum * (1.0 / float(kPcssFilterTaps));

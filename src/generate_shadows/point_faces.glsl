@@ -1,7 +1,7 @@
 // Taps of a soft shadow that leave their face of a point light. Included by pcss.glsl, which has the kernel.
 
-bool leavesFace(ShadowPoint s, PcssKernel k, vec2 px) {
-    return k.cube && (any(lessThan(px, s.rectMin + 1.0)) || any(greaterThan(px, s.rectMax - 1.0)));
+bool leavesFace(ShadowPoint s, PcssKernel k, vec2 corner) {
+    return k.cube && (any(lessThan(corner, s.rectMin + 0.5)) || any(greaterThan(corner, s.rectMax - 1.5)));
 }
 
 // Row of a view's matrix without its translation.
@@ -10,18 +10,18 @@ vec3 viewRow(uint view, uint row) {
                 shadowViews[view].clipFromWorld[2][row]);
 }
 
-// A tap beyond the border of a point light's face looks at the face that its direction meets. Returns 1 if lit;
-// `stored` is what is stored there, as a device depth of the receiver's own view. Views are read field by field: two
-// whole ones at once would cost every caller nine registers (docs/register-pressure.md).
-float otherFace(GpuLight light, ShadowPoint s, PcssKernel k, vec2 px, out float stored) {
+// A tap beyond the border of a point light's face looks at the face that its direction meets. The
+// receiver's plane and what is stored there, compared in that face and told as depths of the own one. Views are read
+// field by field: two whole ones at once would cost every caller nine registers (docs/register-pressure.md).
+void otherFace(GpuLight light, ShadowPoint s, PcssKernel k, vec2 px, out float plane, out float stored) {
     uint own = s.view;
     precise vec2 ndc = (px - shadowViews[own].pxFromNdcOffset) / shadowViews[own].pxFromNdcScale;
     vec3 x = viewRow(own, 0u);
     vec3 y = viewRow(own, 1u);
     precise vec3 direction = viewRow(own, 3u) + x * (ndc.x / dot(x, x)) + y * (ndc.y / dot(y, y));
     precise vec2 away = px - s.px;
-    precise float planeDepth = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
-    float depth = clamp(planeDepth, k.nearest, k.farthest);
+    precise float planeDepth = fma(k.slope.x, away.x, fma(k.slope.y, away.y, k.depth));
+    precise float depth = clamp(max(planeDepth, k.least) * k.sign, 0.0, 1.0);
     precise float linear = shadowViews[own].depthFromLinearB / (depth - shadowViews[own].depthFromLinearA);
 
     uint other = light.shadowView + cubeFace(direction);
@@ -43,6 +43,8 @@ float otherFace(GpuLight light, ShadowPoint s, PcssKernel k, vec2 px, out float 
     receiver = clamp(receiver, 0.0, 1.0);
     precise float inverse = (there - otherA) / otherB * clip.z;  // 1 / own linear depth
     precise float asOwn = shadowViews[own].depthFromLinearA + shadowViews[own].depthFromLinearB * inverse;
-    stored = asOwn;
-    return (reversed ? there <= receiver : there >= receiver) ? 1.0 : 0.0;
+    stored = asOwn * k.sign;
+    // The comparison is the other face's; what is told agrees with it.
+    bool occludes = reversed ? there > receiver : there < receiver;
+    plane = occludes ? -2.0 : 2.0;
 }

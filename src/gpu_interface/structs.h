@@ -94,7 +94,7 @@ struct GpuFrame {
     uvec4 lightCounts;         // x all lights, y directional lights, z mask tiles per row, w mask tile rows
     uvec4 pools;               // x list entries, y visibility slots, z fixed entries per tile (debugging), w frame flags
     vec4 shadows;              // x subsurface bias (m); yzw unused
-    uvec4 random;              // x frame number, low 32 bits; y turns the filters' pattern, 2^32 to a turn; zw unused
+    uvec4 random;              // x frame number, low 32 bits; y turns the filters' pattern, 2^32 to a turn; z, w taps
 };
 
 // What the passes count, written with atomics, cleared at the start of every frame.

@@ -14,8 +14,9 @@ vec2 shadowBoundsOver(uint view, vec2 low, vec2 high, out bool known) {
     if (!known) return vec2(0.0, 1.0);
     uint base = shadowViews[view].boundsFirst;
     uint row = shadowViews[view].boundsRow;
-    uvec2 first = uvec2(low) / (kShadowBoundsBlockPx << level);
-    uvec2 last = uvec2(high) / (kShadowBoundsBlockPx << level);
+    uint shift = uint(findMSB(kShadowBoundsBlockPx)) + level;
+    uvec2 first = uvec2(low) >> shift;
+    uvec2 last = uvec2(high) >> shift;
     vec2 a = shadowBounds[shadowBoundsIndex(base, row, blocks, level, first)];
     vec2 b = shadowBounds[shadowBoundsIndex(base, row, blocks, level, uvec2(last.x, first.y))];
     vec2 c = shadowBounds[shadowBoundsIndex(base, row, blocks, level, uvec2(first.x, last.y))];

@@ -79,6 +79,7 @@ Scene loadScene(const Settings& settings, const renderer::RendererDesc& desc) {
         throw UsageError(played.message());
     renderer::TileDensity density;
     if (settings.lightDensity > 0.0f) {
+        if (settings.lights == 0) throw UsageError("--light-density needs at least one light: give --lights.");
         density = {settings.lightDensity, cameraOf(settings, scene), desc.widthPx, desc.heightPx};
         renderer::scatterLights(scene, settings.lights, settings.seed, &density);
     } else if (settings.lights != 0 && settings.scene != "columns") {

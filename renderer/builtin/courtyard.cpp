@@ -45,7 +45,7 @@ std::uint32_t foliage(SceneBuilder& builder, const char* name, Image image, floa
     material.metallic = 0.0f;
     material.roughness = roughness;
     material.alphaMode = AlphaMode::Mask;
-    material.alphaCutoff = kFoliageCutoff;
+    material.alphaCutoff = meanAlpha(image);
     material.doubleSided = true;
     material.subsurface = thin;
     material.baseColourTexture.image = builder.image(std::move(image));

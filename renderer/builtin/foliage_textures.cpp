@@ -119,6 +119,12 @@ glm::vec3 varied(Random& random, const glm::vec3& tint, float amount) {
 
 }  // namespace
 
+float meanAlpha(const Image& image) {
+    double sum = 0.0;
+    for (std::size_t i = 3; i < image.rgba8.size(); i += 4) sum += image.rgba8[i];
+    return static_cast<float>(sum / 255.0 / (static_cast<double>(image.width) * image.height));
+}
+
 Image paintBroadLeaves(std::uint32_t size) {
     const glm::vec3 green(0.30f, 0.43f, 0.15f), bark(0.33f, 0.27f, 0.16f);
     Card card(size, green);

@@ -1,14 +1,14 @@
 #pragma once
 // Leaf cards: pictures of twigs with an alpha channel, painted by code.
 //
-// Filtering. Texels outside the leaves carry the mean leaf colour, so that smaller mips have no dark rims, and the
-// alpha of every card is about kFoliageCutoff in the mean: a mip of few texels neither closes to a plate nor vanishes.
+// Filtering. Texels outside the leaves carry the mean leaf colour, so that smaller mips have no dark rims. A card's
+// cut-off is its mean alpha: then a mip of few texels neither closes to a plate nor vanishes.
 
 #include "renderer/scene/scene.h"
 
 namespace gnomon::renderer {
 
-inline constexpr float kFoliageCutoff = 0.42f;
+float meanAlpha(const Image& image);
 
 // Each is size by size texels, the twig growing upwards from the middle of the lower edge.
 Image paintBroadLeaves(std::uint32_t size);                         // a twig of an orange tree

@@ -1,0 +1,115 @@
+// The kernel of a soft shadow: where its taps lie in the map, and at which depth the receiver's plane is there.
+#ifndef GNOMON_GENERATE_SHADOWS_PCSS_KERNEL_GLSL
+#define GNOMON_GENERATE_SHADOWS_PCSS_KERNEL_GLSL
+
+#include "generate_shadows/golden_spiral.glsl"
+#include "generate_shadows/shadowmap.glsl"
+
+// Nearer blockers are searched for as if they were at this share of the receiver's depth.
+const float kNearestBlocker = 0.1;
+// A texel that touches a tap's bilinear footprint is at most this far aside.
+const float kTapTexels = 1.5;
+
+// Depths here are device depths with the sign that makes greater ones nearer to the light.
+struct PcssKernel {
+    vec2 corner;  // the receiver's place less half a texel: whole numbers there are texels
+    vec2 right;   // texels per tangent (perspective) or per metre, along the pattern's axes, which the pixel turns, in
+    vec2 down;    // the disk that the receiver sees
+    float sign;
+    float depth;  // of the receiver's plane at the receiver,
+    vec2 slope;   // per texel,
+    float least;  // and its least value: at most one texel's slope behind the receiver
+    float texel;     // one texel in the unit of radii
+    float widest;    // radius of the search, without its margin of a texel
+    float radius0;   // radius of the source's disk at depth d: radius0 + radius1 * d, radius1 at least 0
+    float radius1;
+    bool cube;  // point light: taps that leave the face look at another
+};
+
+// Cosine and sine. 32 bits are a turn; in whole numbers, since every pipeline must have the same.
+vec2 turnOf(uvec2 pixel) {
+    uint turn = pixel.x * 3242174889u + pixel.y * 2447445414u + frame.random.y;
+    precise float f = float((turn << 2u) >> 8u) * (1.0 / 16777216.0);
+    precise float t = (2.0 * f - 1.0) * 0.41421356;  // tangent of half an angle within 45 degrees
+    precise float inverse = 1.0 / (1.0 + t * t);
+    precise vec2 d = vec2((1.0 - t * t) * inverse, 2.0 * t * inverse);
+    uint quadrant = turn >> 30u;
+    if ((quadrant & 1u) != 0u) d = vec2(-d.y, d.x);
+    return (quadrant & 2u) != 0u ? -d : d;
+}
+
+// Off the view's axis the disk, which faces the receiver, is stretched outward.
+void placeDisk(ShadowPoint s, vec2 pxPerUnit, vec2 turn, inout PcssKernel k) {
+    precise float stretch = 1.0 / (1.0 + rayLength(s.tangent));
+    precise vec2 across = s.tangent * stretch;
+    precise vec2 x = vec2(fma(s.tangent.x, across.x, 1.0), s.tangent.x * across.y) * pxPerUnit;
+    precise vec2 y = vec2(s.tangent.x * across.y, fma(s.tangent.y, across.y, 1.0)) * pxPerUnit;
+    precise vec2 right = x * turn.x + y * turn.y;
+    precise vec2 down = y * turn.x - x * turn.y;
+    k.right = right;
+    k.down = down;
+}
+
+PcssKernel pcssKernelOf(GpuLight light, ShadowPoint s, uvec2 pixel) {
+    precise float a = shadowViews[s.view].depthFromLinearA;
+    precise float inverseB = 1.0 / shadowViews[s.view].depthFromLinearB;
+    vec2 pxPerUnit = shadowViews[s.view].pxPerMetre;
+    precise float r = light.sourceRadius;
+    PcssKernel k;
+    k.sign = s.reversedZ ? 1.0 : -1.0;
+    precise float radius0, radius1, widest;
+    if (isOrthographicView(shadowViews[s.view])) {
+        radius1 = -r * inverseB * k.sign;
+        radius0 = r * (s.linear + a * inverseB);
+        widest = max(s.reversedZ ? radius0 + radius1 : radius0, 0.0);
+    } else {
+        precise float seen = r / s.linear;
+        radius1 = r * inverseB * k.sign;
+        radius0 = -r * (a * inverseB) - seen;
+        widest = (1.0 / kNearestBlocker - 1.0) * seen;
+    }
+    precise float texel = 1.0 / max(pxPerUnit.x, pxPerUnit.y);
+    precise float cut = min(widest, float(kMaxPcssRadiusPx) * texel);
+    precise float behind = s.depth * k.sign - (abs(s.slope.x) + abs(s.slope.y));
+    precise vec2 corner = s.px - 0.5;
+    placeDisk(s, pxPerUnit, turnOf(pixel), k);
+    k.corner = corner;
+    k.depth = s.depth * k.sign;
+    k.slope = s.slope * k.sign;
+    k.least = max(behind, s.reversedZ ? 0.0 : -1.0);
+    k.texel = texel;
+    k.widest = cut;
+    k.radius0 = radius0;
+    k.radius1 = radius1;
+    k.cube = lightType(light) == kLightPoint;
+    return k;
+}
+
+// Tap `i` at radius 1, in texels from the receiver.
+vec2 tapOffset(PcssKernel k, uint i) {
+    precise vec2 offset = vec2(fma(k.right.x, kGoldenSpiral[i].x, k.down.x * kGoldenSpiral[i].y),
+                               fma(k.right.y, kGoldenSpiral[i].x, k.down.y * kGoldenSpiral[i].y));
+    return offset;
+}
+
+// Half the sides of a box that holds the texels of all taps within a radius.
+vec2 tapExtent(PcssKernel k, float radius) {
+    return radius * (abs(k.right) + abs(k.down)) + kTapTexels;
+}
+
+bool mayLeave(ShadowPoint s, PcssKernel k, float radius) {
+    vec2 extent = tapExtent(k, radius);
+    return any(lessThan(s.px - extent, s.rectMin)) || any(greaterThan(s.px + extent, s.rectMax));
+}
+
+#include "generate_shadows/point_faces.glsl"
+
+// The receiver's plane and the map at the four texels around `corner`, which is a place less half a texel.
+vec4 planeDepthsAt(PcssKernel k, vec2 first) {
+    precise vec2 away = first - k.corner;
+    precise float depth = fma(k.slope.x, away.x, fma(k.slope.y, away.y, k.depth));
+    precise vec4 depths = depth + vec4(k.slope.y, k.slope.x + k.slope.y, k.slope.x, 0.0);
+    return max(depths, vec4(k.least));
+}
+
+#endif

@@ -1,4 +1,5 @@
 #include "renderer/builtin/courtyard.h"
+#include "renderer/builtin/courtyard_figure.h"
 
 #include "renderer/builtin/foliage_textures.h"
 #include "renderer/builtin/procedural_textures.h"
@@ -125,6 +126,25 @@ void makeMaterials(Parts& parts) {
         b.scene.materials[cloth].doubleSided = b.scene.materials[cloth].subsurface = true;
 }
 
+// Once around the fountain in a loop of the scene's animation: for films, and to look for what pops.
+void addFlight(SceneBuilder& b) {
+    constexpr int kKeys = 96;
+    const auto view = [](float t) {
+        const float angle = 6.28318530718f * t;
+        const glm::vec3 eye(-9.0f * std::cos(angle), 3.1f + 1.4f * std::sin(2.0f * angle + 0.6f), 5.2f * std::sin(angle));
+        return lookingAt(eye, {1.5f * std::cos(angle), 1.7f, -1.2f * std::sin(angle)});
+    };
+    const auto turn = [view](float t) { return glm::normalize(glm::quat_cast(glm::mat3(view(t)))); };
+    const std::uint32_t node = addNode(b.scene, "flight", kNone, glm::vec3(view(0.0f)[3]), turn(0.0f));
+    animatePlace(b.scene, node, kKeys, [view](float t) { return glm::vec3(view(t)[3]); });
+    animateTurn(b.scene, node, kKeys, turn);
+    SceneCamera camera = b.scene.cameras.back();
+    camera.name = "flight";
+    camera.worldFromCamera = worldFromNode(b.scene, node);
+    camera.node = node;
+    b.scene.cameras.push_back(camera);
+}
+
 Scene build(const char* name, Hour hour) {
     Parts parts;
     parts.builder.scene.name = name;
@@ -148,6 +168,7 @@ Scene build(const char* name, Hour hour) {
     b.camera("arcade", {-12.2f, 1.75f, -10.7f}, {2.0f, 1.55f, -9.3f}, 0.95f);
     b.camera("fountain", {4.6f, 1.45f, 4.4f}, {-0.6f, 1.75f, -1.2f}, 0.9f);
     b.camera("gallery", {-11.2f, 6.15f, -10.9f}, {2.5f, 2.6f, 1.2f}, 0.95f);
+    addFlight(b);
     if (hour == Hour::Day) {
         b.scene.skyColour = {7.6f, 11.0f, 17.0f};
         b.scene.groundColour = {3.0f, 2.3f, 1.6f};

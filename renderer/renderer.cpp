@@ -187,7 +187,7 @@ struct Renderer::State {
 
     std::vector<Light> lightsOf(const glm::dvec3& origin, const ShadowPlan& plan) const;
     void selectCasters(const Camera& camera, const glm::dvec3& origin);
-    void beginView(const Camera& camera, const glm::dvec3& origin, const ShadowPlan& plan);
+    void beginView(const Camera& camera, const glm::dvec3& origin, const ShadowPlan& plan, ShadowMode mode);
     void recordPasses(VkCommandBuffer c, const GBufferCamera& camera, ShadowMode mode, FrameReport& report);
 };
 
@@ -259,7 +259,8 @@ void Renderer::State::selectCasters(const Camera& camera, const glm::dvec3& orig
 }
 
 // Phase 1 and everything else the library wants to know of the frame.
-void Renderer::State::beginView(const Camera& camera, const glm::dvec3& origin, const ShadowPlan& plan) {
+void Renderer::State::beginView(const Camera& camera, const glm::dvec3& origin, const ShadowPlan& plan,
+                                ShadowMode mode) {
     const std::vector<Light> lights = lightsOf(origin, plan);
     std::vector<ShadowView> views;
     views.reserve(plan.views.size());
@@ -277,7 +278,7 @@ void Renderer::State::beginView(const Camera& camera, const glm::dvec3& origin, 
     frame.receiverFlags = {gbuffer.view(GBuffer::Receiver)};
     frame.atlases = atlases;
     frame.patternPerFrame = desc.patternPerFrame;
-    frame.shadowBounds = desc.shadowBounds;
+    frame.shadowBounds = desc.shadowBounds && mode != ShadowMode::Off;
     require(view->beginFrame(frame));
 }
 
@@ -329,7 +330,7 @@ std::uint64_t Renderer::renderFrame(const SceneCamera& cameraAtRest, ShadowMode 
     ShadowPlan plan = s.planner.plan(
         s.shadowLights, planCameraOf(sceneCamera, gbufferCamera, origin, s.desc.widthPx, s.desc.heightPx), origin);
     s.atlas.prepare(s.scene, s.shadowLights, plan);
-    s.beginView(camera, origin, plan);
+    s.beginView(camera, origin, plan, mode);
 
     State::Known& known = s.known[number % kFramesInFlight];
     known = {};

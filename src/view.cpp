@@ -100,12 +100,11 @@ ViewSizes sizesOf(const Context::State& context, const ViewDesc& desc) {
     s.bytes[kBindVisibility] = s.visibilitySlots * slotBytes;
     s.bytes[kBindEvaluateTiles] = sizeof(GpuEvaluateHead) + tiles * 4;
     s.bytes[kBindCounters] = sizeof(GpuCounters);
+    // At least one, so that there is a buffer to bind.
+    const std::uint64_t mostCells = largest / shadowBoundsBytes(1);
+    const std::uint64_t cells = std::min<std::uint64_t>(shadowBoundsCellsFor(desc.shadowBoundsTexels), mostCells);
+    s.boundsCells = std::max(static_cast<std::uint32_t>(cells), 1u);
     return s;
-}
-
-// At least one, so that there is a buffer to bind.
-std::uint32_t boundsCellsOf(const ViewDesc& desc) {
-    return std::max(shadowBoundsCellsFor(desc.shadowBoundsTexels), 1u);
 }
 
 MemoryReport reportOf(const ViewDesc& desc, const ViewSizes& sizes) {
@@ -116,7 +115,7 @@ MemoryReport reportOf(const ViewDesc& desc, const ViewSizes& sizes) {
     };
     for (const BufferDecl& decl : kBuffers) add(decl.name, sizes.bytes[decl.binding], decl.perFrame, decl.perFrame);
     add("shadow_views", VkDeviceSize(desc.maxShadowViews) * sizeof(GpuShadowView), true, true);
-    const std::uint32_t cells = boundsCellsOf(desc);
+    const std::uint32_t cells = sizes.boundsCells;
     add("shadow_bounds", shadowBoundsBytes(cells), false, false);
     add("shadow_bounds_cells", VkDeviceSize(cells) * sizeof(GpuShadowBoundsCell), true, true);
     add("statistics_readback", kReadbackBytes, true, true);
@@ -153,9 +152,9 @@ Result createBuffers(View::State& state) {
             }
         }
     }
-    const std::uint32_t cells = boundsCellsOf(state.desc);
-    if (Result made = createBuffer(device, "shadow_bounds", shadowBoundsBytes(cells), kDeviceUsage, MemoryUse::Device,
-                                   state.shadowBounds);
+    const std::uint32_t cells = state.sizes.boundsCells;
+    if (Result made = createBuffer(device, "shadow_bounds", shadowBoundsBytes(cells) + 2 * state.desc.guardBytes,
+                                   kDeviceUsage, MemoryUse::Device, state.shadowBounds);
         !made) {
         return made;
     }
@@ -247,6 +246,8 @@ void writeListsSets(View::State& state) {
         std::uint32_t count = kListsBindingCount;
         for (const auto& [binding, buffer] : others) {
             infos[count] = {buffer, 0, VK_WHOLE_SIZE};
+            if (binding == kBindShadowBounds)
+                infos[count] = {buffer, state.desc.guardBytes, shadowBoundsBytes(state.sizes.boundsCells)};
             writes[count] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, slot.shadowmaps, binding, 0, 1,
                              VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,      nullptr, &infos[count],   nullptr};
             ++count;
@@ -433,6 +434,8 @@ Result View::beginFrame(const FrameDesc& frame, PrepareReport* report) noexcept 
         slot.boundsCellCount = state.boundsCells.list(frame.shadowViews, frame.atlases,
                                                       static_cast<GpuShadowView*>(slot.shadowViews.mapped),
                                                       static_cast<GpuShadowBoundsCell*>(slot.boundsCells.mapped));
+    } else {
+        state.boundsCells.skip(frame.shadowViews, frame.atlases);
     }
     completeFrameConstants(state, frame, constants);
     std::memcpy(slot.streamed[kBindFrame].mapped, &constants, sizeof(constants));
@@ -470,7 +473,7 @@ VkBuffer View::buffer(const char* name) const noexcept {
         return decl.perFrame ? state_->slots[state_->current].streamed[decl.binding].buffer
                              : state_->device[decl.binding].buffer;
     }
-    return VK_NULL_HANDLE;
+    return std::strcmp(name, "shadow_bounds") == 0 ? state_->shadowBounds.buffer : VK_NULL_HANDLE;
 }
 
 }  // namespace gnomon

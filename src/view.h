@@ -24,6 +24,7 @@ struct ViewSizes {
     std::uint32_t tilesX = 0, tilesY = 0;
     std::uint32_t listEntries = 0, visibilitySlots = 0;
     bool poolsCapped = false;
+    std::uint32_t boundsCells = 0;
     VkDeviceSize bytes[gpu::kListsBindingCount] = {};  // by binding
 };
 

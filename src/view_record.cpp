@@ -176,6 +176,7 @@ void View::recordShadowBounds(VkCommandBuffer commands) noexcept {
     State& state = *state_;
     const std::uint32_t cells = state.slots[state.current].boundsCellCount;
     if (cells != 0) recordPass(state, commands, kPassShadowBounds, cells, 1);
+    state.boundsCells.made();
     publish(state, commands);
 }
 

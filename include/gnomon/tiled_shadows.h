@@ -53,7 +53,7 @@ enum class ListReservation : std::uint8_t {
 };
 
 /// The device, and the variant of the pipelines. Needs Vulkan 1.3 with synchronization2, and computeFullSubgroups and
-/// subgroupSizeControl enabled; subgroup operations (basic, arithmetic) in compute shaders; 15 storage buffers per
+/// subgroupSizeControl enabled; subgroup operations (basic, arithmetic) in compute shaders; 17 storage buffers per
 /// stage; for debugLabels VK_EXT_debug_utils on the instance.
 struct ContextDesc {
     VkInstance instance = VK_NULL_HANDLE;
@@ -114,8 +114,8 @@ struct ViewDesc {
     std::uint32_t listEntries = 0;
     std::uint32_t visibilitySlots = 0;
     std::uint32_t maxShadowViews = 4096;
-    /// Texels of all shadow atlases and layers for which recordShadowBounds() keeps bounds (11 bytes per 256); frames
-    /// with larger atlases do without. 0: never.
+    /// Texels of all shadow atlases and layers for which recordShadowBounds() keeps bounds (11 bytes per 256), their
+    /// sides rounded up to multiples of 256; frames with larger atlases do without. 0: never.
     std::uint64_t shadowBoundsTexels = std::uint64_t{8192} * 8192;
     bool timestamps = true;  ///< GPU times of every pass in the statistics (needs a queue with timestamps)
     bool statistics = true;  ///< the means over tiles (one small extra pass)
@@ -168,7 +168,9 @@ struct FrameDesc {
     /// tile of the active viewport.
     HostImage depthPyramid;
     std::span<const ShadowAtlas> atlases;  ///< up to 4
-    bool shadowBounds = false;             ///< recordShadowBounds() will be called in this frame
+    /// recordShadowBounds() will be called in this frame. Bounds are kept from frame to frame while ShadowView::changed
+    /// is false; after a recorded frame that was never submitted it must be true once.
+    bool shadowBounds = false;
     float subsurfaceBiasMetres = 0.02f;
     /// Turns the sample pattern of Filter::Pcss from frame to frame, for hosts that accumulate frames.
     bool patternPerFrame = false;

@@ -9,7 +9,15 @@ namespace {
 
 using namespace gpu;
 
-constexpr std::uint8_t kNever = 0, kMade = 1, kListed = 2;
+// Calls `use` with the index of every cell of an atlas layer that the view touches, and its place.
+template <typename Use>
+void forEachCell(const ShadowView& view, std::uint32_t layerCell, std::uint32_t columns, const Use& use) {
+    const std::uint32_t lastX = (view.xPx + view.widthPx - 1) / kShadowBoundsCellPx;
+    const std::uint32_t lastY = (view.yPx + view.heightPx - 1) / kShadowBoundsCellPx;
+    for (std::uint32_t y = view.yPx / kShadowBoundsCellPx; y <= lastY; ++y) {
+        for (std::uint32_t x = view.xPx / kShadowBoundsCellPx; x <= lastX; ++x) use(layerCell + y * columns + x, x, y);
+    }
+}
 
 bool sameAtlas(const ShadowAtlas& a, const ShadowAtlas& b) {
     return a.view == b.view && a.widthPx == b.widthPx && a.heightPx == b.heightPx && a.layers == b.layers;
@@ -19,7 +27,8 @@ bool sameAtlas(const ShadowAtlas& a, const ShadowAtlas& b) {
 
 std::uint32_t shadowBoundsCellsFor(std::uint64_t texels) noexcept {
     const std::uint64_t perCell = std::uint64_t(kShadowBoundsCellPx) * kShadowBoundsCellPx;
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>((texels + perCell - 1) / perCell, 1u << 20));
+    const std::uint64_t cells = texels / perCell + (texels % perCell != 0 ? 1 : 0);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(cells, 1u << 20));
 }
 
 std::uint64_t shadowBoundsBytes(std::uint32_t cells) noexcept {
@@ -28,7 +37,7 @@ std::uint64_t shadowBoundsBytes(std::uint32_t cells) noexcept {
 
 void ShadowBoundsCells::create(std::uint32_t capacity) {
     capacity_ = capacity;
-    state_.assign(capacity, kNever);
+    state_.assign(capacity, Cell::Unknown);
 }
 
 // Where each atlas' cells lie; false if they do not fit. Other atlases than last frame's start afresh.
@@ -43,7 +52,7 @@ bool ShadowBoundsCells::layOut(std::span<const ShadowAtlas> atlases) noexcept {
         cells += std::uint64_t(grid.columns) * grid.rows * atlases[i].layers;
     }
     const bool fits = cells <= capacity_;
-    if (!same || !fits) std::fill(state_.begin(), state_.end(), kNever);
+    if (!same || !fits) std::fill(state_.begin(), state_.end(), Cell::Unknown);
     atlasCount_ = static_cast<std::uint32_t>(atlases.size());
     std::copy(atlases.begin(), atlases.end(), atlases_);
     return fits && capacity_ != 0;
@@ -52,9 +61,11 @@ bool ShadowBoundsCells::layOut(std::span<const ShadowAtlas> atlases) noexcept {
 std::uint32_t ShadowBoundsCells::list(std::span<const ShadowView> views, std::span<const ShadowAtlas> atlases,
                                       GpuShadowView* gpuViews, GpuShadowBoundsCell* out) noexcept {
     if (!layOut(atlases)) return 0;
+    std::replace(state_.begin(), state_.end(), Cell::Listed, Cell::Unknown);
     std::uint32_t count = 0;
     for (std::size_t i = 0; i < views.size(); ++i) {
         const ShadowView& view = views[i];
+        const ShadowAtlas& atlas = atlases[view.atlas];
         const Grid& grid = grids_[view.atlas];
         const std::uint32_t layerCell = grid.firstCell + view.layer * grid.columns * grid.rows;
         const std::uint32_t row = grid.columns * kShadowBoundsCellBlocks;
@@ -62,27 +73,35 @@ std::uint32_t ShadowBoundsCells::list(std::span<const ShadowView> views, std::sp
         gpuViews[i].boundsFirst = layerCell * kShadowBoundsCellEntries;
         gpuViews[i].boundsRow = row;
         gpuViews[i].boundsBlocks = blocks;
-        const std::uint32_t lastX = (view.xPx + view.widthPx - 1) / kShadowBoundsCellPx;
-        const std::uint32_t lastY = (view.yPx + view.heightPx - 1) / kShadowBoundsCellPx;
-        for (std::uint32_t y = view.yPx / kShadowBoundsCellPx; y <= lastY; ++y) {
-            for (std::uint32_t x = view.xPx / kShadowBoundsCellPx; x <= lastX; ++x) {
-                std::uint8_t& state = state_[layerCell + y * grid.columns + x];
-                if (state == kListed || (state == kMade && !view.changed)) continue;
-                state = kListed;
-                const ShadowAtlas& atlas = atlases[view.atlas];
-                out[count++] = {view.atlas | view.layer << 8,
-                                x,
-                                y,
-                                layerCell * kShadowBoundsCellEntries,
-                                row,
-                                blocks,
-                                1.0f / static_cast<float>(atlas.widthPx),
-                                1.0f / static_cast<float>(atlas.heightPx)};
-            }
-        }
+        forEachCell(view, layerCell, grid.columns, [&](std::uint32_t cell, std::uint32_t x, std::uint32_t y) {
+            if (state_[cell] == Cell::Listed || (state_[cell] == Cell::Made && !view.changed)) return;
+            state_[cell] = Cell::Listed;
+            out[count++] = {view.atlas | view.layer << 8,
+                            x,
+                            y,
+                            layerCell * kShadowBoundsCellEntries,
+                            row,
+                            blocks,
+                            1.0f / static_cast<float>(atlas.widthPx),
+                            1.0f / static_cast<float>(atlas.heightPx)};
+        });
     }
-    std::replace(state_.begin(), state_.end(), kListed, kMade);
     return count;
+}
+
+void ShadowBoundsCells::made() noexcept {
+    std::replace(state_.begin(), state_.end(), Cell::Listed, Cell::Made);
+}
+
+void ShadowBoundsCells::skip(std::span<const ShadowView> views, std::span<const ShadowAtlas> atlases) noexcept {
+    if (capacity_ == 0 || !layOut(atlases)) return;
+    for (const ShadowView& view : views) {
+        if (!view.changed) continue;
+        const Grid& grid = grids_[view.atlas];
+        const std::uint32_t layerCell = grid.firstCell + view.layer * grid.columns * grid.rows;
+        forEachCell(view, layerCell, grid.columns,
+                    [&](std::uint32_t cell, std::uint32_t, std::uint32_t) { state_[cell] = Cell::Unknown; });
+    }
 }
 
 }  // namespace gnomon

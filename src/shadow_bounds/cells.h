@@ -16,7 +16,8 @@ std::uint32_t shadowBoundsCellsFor(std::uint64_t texels) noexcept;
 // Bytes of the bounds of so many cells, all levels.
 std::uint64_t shadowBoundsBytes(std::uint32_t cells) noexcept;
 
-// Remembers which cells hold bounds of what the atlases hold. Not thread safe.
+// Remembers which cells hold bounds of what the atlases hold. Per frame list(), and made() if the pass is recorded; or
+// skip(). Not thread safe.
 class ShadowBoundsCells {
 public:
     // Takes memory once. Throws std::bad_alloc.
@@ -27,6 +28,10 @@ public:
     // room for the capacity. Returns how many.
     std::uint32_t list(std::span<const ShadowView> views, std::span<const ShadowAtlas> atlases,
                        gpu::GpuShadowView* gpuViews, gpu::GpuShadowBoundsCell* out) noexcept;
+    // The pass that makes the cells last listed is recorded. Without this call they are listed again.
+    void made() noexcept;
+    // A frame without bounds: the cells of changed views no longer hold what the atlases hold.
+    void skip(std::span<const ShadowView> views, std::span<const ShadowAtlas> atlases) noexcept;
 
 private:
     struct Grid {
@@ -39,7 +44,8 @@ private:
     Grid grids_[gpu::kMaxShadowAtlases];
     ShadowAtlas atlases_[gpu::kMaxShadowAtlases];
     std::uint32_t atlasCount_ = 0;
-    std::vector<std::uint8_t> state_;  // per cell: 0 never made, 1 made, 2 listed in this frame
+    enum class Cell : std::uint8_t { Unknown, Made, Listed };
+    std::vector<Cell> state_;
 };
 
 }  // namespace gnomon

@@ -61,6 +61,21 @@ TEST(Refusal, BadDescriptions) {
         desc.pcfRadius = radius;
         expectRefused(vulkan, desc, Status::BadArgument, "pcfRadius");
     }
+    for (PcssTaps taps : {PcssTaps{0, 8}, PcssTaps{65, 8}, PcssTaps{8, 0}, PcssTaps{8, 65}, PcssTaps{~0u, ~0u}}) {
+        desc = vulkan.desc();
+        desc.pcss = taps;
+        expectRefused(vulkan, desc, Status::BadArgument, "pcss");
+    }
+    for (std::uint32_t bits : {0u, 1u, 5u, 16u, ~0u}) {
+        desc = vulkan.desc();
+        desc.visibilityBits = bits;
+        expectRefused(vulkan, desc, Status::BadArgument, "visibilityBits");
+    }
+    for (std::uint32_t atlases : {0u, 5u, ~0u}) {
+        desc = vulkan.desc();
+        desc.maxShadowAtlases = atlases;
+        expectRefused(vulkan, desc, Status::BadArgument, "maxShadowAtlases");
+    }
     for (std::uint32_t entries : {0u, 1025u}) {
         desc = vulkan.desc();
         desc.listReservation = ListReservation::Fixed;
@@ -111,8 +126,11 @@ TEST(Refusal, MissingSubgroupOperations) {
 
 TEST(Refusal, TooFewStorageBuffers) {
     FakeVulkan vulkan;
-    vulkan.storageBuffersPerStage = 14;
+    vulkan.storageBuffersPerStage = 16;
     expectRefused(vulkan, vulkan.desc(), Status::UnsupportedDevice, "storage buffers");
+    vulkan.storageBuffersPerStage = 17;
+    std::unique_ptr<Context> context;
+    EXPECT_TRUE(Context::create(vulkan.desc(), context));
 }
 
 TEST(Refusal, SubgroupSizes) {

@@ -288,6 +288,8 @@ TEST(ShaderInterface, SetsAreKnown) {
     }
 }
 
+Key placeOf(const ResourceLayout& r) { return {r.set, r.binding}; }
+
 std::size_t resourcesIn(const ShaderLayout& shader, std::uint32_t set) {
     return static_cast<std::size_t>(std::ranges::count(shader.resources, set, &ResourceLayout::set));
 }
@@ -301,9 +303,15 @@ TEST(ShaderInterface, MainLightingSeesNoShadowmap) {
     for (const char* name : {"lighting_evaluate", "lighting_inline", "generate_shadows"}) {
         const std::optional<ShaderLayout> shader = shaderNamed(name);
         ASSERT_TRUE(shader) << name;
-        // All but the list of cells, which is for making the bounds.
+        // All but the list of cells, which the shadow bounds' own pass reads alone.
         EXPECT_EQ(resourcesIn(*shader, kShadowmapsSet), kShadowmapsBindingCount - 1) << name;
+        EXPECT_EQ(std::ranges::count(shader->resources, Key{kShadowmapsSet, kBindShadowBoundsCells}, placeOf), 0) << name;
     }
+    const std::optional<ShaderLayout> bounds = shaderNamed("shadow_bounds");
+    ASSERT_TRUE(bounds);
+    EXPECT_EQ(resourcesIn(*bounds, kListsSet), 0u);
+    EXPECT_EQ(resourcesIn(*bounds, kReceiversSet), 0u);
+    EXPECT_EQ(std::ranges::count(bounds->resources, Key{kShadowmapsSet, kBindShadowBoundsCells}, placeOf), 1);
     for (const char* name : {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "gather_statistics"}) {
         const std::optional<ShaderLayout> shader = shaderNamed(name);
         ASSERT_TRUE(shader) << name;
@@ -397,7 +405,7 @@ TEST(ShaderInterface, DescriptorsAreFew) {
         const auto count = [&](VkDescriptorType type) {
             return std::ranges::count(shader.resources, type, &ResourceLayout::type);
         };
-        EXPECT_LE(count(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 16) << shader.name;
+        EXPECT_LE(count(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 17) << shader.name;
         EXPECT_LE(count(VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER), 2) << shader.name;
         EXPECT_LE(count(VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE), 12) << shader.name;
         EXPECT_LE(count(VK_DESCRIPTOR_TYPE_SAMPLER), 1) << shader.name;

@@ -88,17 +88,23 @@ TEST(Lists, OneSpot) {
 
 TEST(Lists, OnlyDirectional) {
     std::vector<Light> lights(3, directional());
-    lights[1].firstShadowView = 5;  // they cast none yet
+    lights[1].firstShadowView = 5, lights[1].cascadeCount = 3, lights[1].sourceRadius = 0.5f;
+    lights[2].cascadeCount = 9;  // without a shadow view it says nothing
     const Prepared p = runLights(lights);
     ASSERT_TRUE(p.result.ok()) << p.result.message();
     EXPECT_EQ(hostIndices(p), (std::vector<std::uint32_t>{0, 1, 2}));
     EXPECT_EQ(p.frame.lightCounts.x, 3u);
     EXPECT_EQ(p.frame.lightCounts.y, 3u);
     EXPECT_EQ(p.report.directional, 3u);
-    EXPECT_EQ(p.report.casting, 0u);
+    EXPECT_EQ(p.report.casting, 1u);
     EXPECT_EQ(p.lights[0].rangeMetres, 3.0e38f);
     EXPECT_NEAR(p.lights[0].directionWs.y, -1, 1e-6);
-    EXPECT_EQ(p.lights[1].shadowView, gpu::kNoShadowView);
+    EXPECT_EQ(p.lights[0].shadowView, gpu::kNoShadowView);
+    EXPECT_EQ(p.lights[0].typeAndFlags, gpu::kLightDirectional);
+    EXPECT_EQ(p.lights[1].shadowView, 5u);
+    EXPECT_EQ(p.lights[1].typeAndFlags,
+              gpu::kLightDirectional | gpu::kLightCastsBit | 3u << gpu::kLightCascadesShift);
+    EXPECT_NEAR(p.lights[1].sourceRadius, std::tan(0.5), 1e-6);
     EXPECT_TRUE(std::all_of(p.masks.begin(), p.masks.end(), [](std::uint32_t w) { return w == 0; }));
     EXPECT_TRUE(std::all_of(p.zBins.begin(), p.zBins.end(), [](std::uint32_t w) { return w == gpu::kZBinEmpty; }));
 }
@@ -320,6 +326,13 @@ TEST(BadLight, EachHasItsSentence) {
     expectRefused(with(point, [&](Light& l) { l.fadeStartMetres = nan; }), " fadeEndMetres");
     expectRefused(with(point, [&](Light& l) { l.shadowFadeEndMetres = 3; }), "shadowFadeEndMetres");
     expectRefused(with(point, [&](Light& l) { l.firstShadowView = 995; }), "firstShadowView");
+    Light sun = directional();
+    sun.firstShadowView = 996, sun.cascadeCount = 4, sun.sourceRadius = 0.5f;
+    expectRefused(with(sun, [&](Light& l) { l.cascadeCount = 0; }), "cascadeCount");
+    expectRefused(with(sun, [&](Light& l) { l.cascadeCount = 9; }), "cascadeCount");
+    expectRefused(with(sun, [&](Light& l) { l.cascadeCount = 5; }), "firstShadowView");
+    expectRefused(with(sun, [&](Light& l) { l.sourceRadius = 0.51f; }), "at most 0.5 radians");
+    EXPECT_TRUE(runLights({sun}).result.ok());
     expectRefused(with(spot, [&](Light& l) { l.firstShadowView = 1000; }), "firstShadowView");
     expectRefused(with(point, [&](Light& l) { l.type = static_cast<LightType>(9); }), "LightType");
 }

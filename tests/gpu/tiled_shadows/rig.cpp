@@ -16,7 +16,7 @@ constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
 constexpr const char* kDeviceBuffers[] = {
     "tile_group_light_masks", "tile_depth_ranges", "tile_light_slot_ids", "approximate_counts",
     "early_light_list",       "early_counts",      "final_light_list",    "final_counts",
-    "visibility",             "evaluate_tiles",    "counters"};
+    "visibility",             "evaluate_tiles",    "counters",            "shadow_bounds"};
 
 void barrier(VkCommandBuffer commands, Access before, Access after) {
     VkMemoryBarrier2 all{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
@@ -179,6 +179,7 @@ FrameDesc Rig::frameDesc(const FrameInput& input) {
 Result Rig::begin(const FrameInput& input, PrepareReport* report) {
     const Result begun = view_->beginFrame(frameDesc(input), report);
     shadowBounds_ = input.shadowBounds;
+    boundsKept_ = !input.shadowViewsChanged;
     if (begun) ++nextFrame_;
     return begun;
 }
@@ -211,8 +212,10 @@ void Rig::recordUploads(VkCommandBuffer commands, const FrameInput& input) {
 
 void Rig::recordFill(VkCommandBuffer commands) const {
     barrier(commands, kAll, renderer::access::kTransferWrite);
-    for (const char* name : kDeviceBuffers)
+    for (const char* name : kDeviceBuffers) {
+        if (boundsKept_ && std::strcmp(name, "shadow_bounds") == 0) continue;
         vkCmdFillBuffer(commands, view_->buffer(name), 0, VK_WHOLE_SIZE, kCanary);
+    }
     barrier(commands, renderer::access::kTransferWrite, kAll);
 }
 
@@ -294,6 +297,9 @@ void Rig::decode(FrameResult& r) const {
     r.finalList = contents("final_light_list");
     r.visibility = contents("visibility");
     r.evaluateTiles = contents("evaluate_tiles");
+    const std::vector<std::uint32_t> bounds = contents("shadow_bounds");
+    r.shadowBounds.resize(bounds.size() / 2);
+    std::memcpy(r.shadowBounds.data(), bounds.data(), bounds.size() * 4);
     r.listCapacity = view_->memory().listEntries;
     r.slotCapacity = view_->memory().visibilitySlots;
     r.setup = setup_;

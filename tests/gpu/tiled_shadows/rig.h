@@ -41,6 +41,7 @@ struct FrameResult {
     std::vector<float> depthRanges;
     std::vector<std::uint32_t> groupMasks, slotIds, approximateCounts, earlyList, earlyCounts, finalList, finalCounts,
         visibility, evaluateTiles;  ///< per-tile ones: of the active tiles, the others whole
+    std::vector<gpu::vec2> shadowBounds;  ///< least and greatest depths; see src/shadow_bounds
     gpu::GpuCounters counters{};
     FrameStatistics statistics;
     bool hasStatistics = false;
@@ -106,6 +107,7 @@ private:
     bool atlasesUploaded_ = false;
     std::vector<ShadowView> unchangedViews_;  // of the frame begun, where they are said to be so
     bool shadowBounds_ = false;               // in the frame begun
+    bool boundsKept_ = false;                 // no view has changed: the fill leaves them alone
     std::vector<renderer::Buffer> staging_;
     struct Range {
         std::string name;

@@ -61,6 +61,12 @@ ViewDesc viewDescFor(const FrameInput& input) {
     desc.maxShadowViews = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(input.shadows->views.size()));
     const std::uint32_t tiles = gpu::divideRoundingUp(input.widthPx, gpu::kShadowTileSizePx) *
                                 gpu::divideRoundingUp(input.heightPx, gpu::kShadowTileSizePx);
+    desc.shadowBoundsTexels = 0;
+    for (const reference::AtlasCopy& atlas : input.shadows->atlases) {
+        const auto cells = [](std::uint32_t px) { return gpu::divideRoundingUp(px, gpu::kShadowBoundsCellPx); };
+        desc.shadowBoundsTexels += std::uint64_t(cells(atlas.widthPx)) * cells(atlas.heightPx) * atlas.layers *
+                                   gpu::kShadowBoundsCellPx * gpu::kShadowBoundsCellPx;
+    }
     desc.listEntries = tiles * 96;
     desc.visibilitySlots = tiles * 48;
     return desc;

@@ -1,4 +1,4 @@
-// Deferred shadows equal shadows evaluated while lighting: every stored visibility has 8 bits, and both ways return
+// Deferred shadows equal shadows evaluated while lighting: every stored visibility has 8 bits (or 4), and both ways return
 // the same ones, so the pictures may differ by the rounding of one sum of lights alone: 1/255.
 #include "image/renderer/harness.h"
 
@@ -10,14 +10,21 @@ GNOMON_IMAGE_TEST_SUITE(DeferredIsInline);
 struct FilterCase {
     const char* name;
     Filter filter;
-    std::uint32_t radius;
+    std::uint32_t radius = 1;
+    PcssTaps taps = kFewTaps;
+    std::uint32_t bits = 8;
 };
-constexpr FilterCase kFilters[] = {{"hard", Filter::Hard, 1}, {"pcf1", Filter::Pcf, 1}, {"pcf3", Filter::Pcf, 3}};
+constexpr FilterCase kHard = {"hard", Filter::Hard}, kPcf1 = {"pcf1", Filter::Pcf, 1}, kPcf3 = {"pcf3", Filter::Pcf, 3},
+                     kPcss = {"pcss", Filter::Pcss}, kPcssMany = {"pcss 16+24", Filter::Pcss, 1, kPcssMedium},
+                     kPcssFourBits = {"pcss, 4 bits", Filter::Pcss, 1, kFewTaps, 4},
+                     kPcfFourBits = {"pcf1, 4 bits", Filter::Pcf, 1, kFewTaps, 4};
 
 RendererDesc withFilter(const FilterCase& filter) {
     RendererDesc desc = smallDesc();
     desc.filter = filter.filter;
     desc.pcfRadius = filter.radius;
+    desc.pcss = filter.taps;
+    desc.visibilityBits = filter.bits;
     return desc;
 }
 
@@ -26,41 +33,100 @@ bool castsShadows(const std::string& scene) {
     return scene != "empty-plane" && scene != "single-triangle" && scene != "lights-only";
 }
 
+void compareBoth(const Device& device, const char* scene, std::uint32_t scattered, const FilterCase& filter,
+                 Worst& worst) {
+    const View3d view = builtin(scene, scattered);
+    expectDeferredIsInline(device, view.name + " " + filter.name, view, withFilter(filter), worst, castsShadows(scene));
+}
+
 void everyScene(const Device& device, const FilterCase& filter, std::uint32_t scattered, Worst& worst) {
-    for (const BuiltinInfo& info : builtinScenes()) {
-        // Own lights in every scene by one filter, 64 more by another; the third in one scene.
-        const bool chosen = filter.radius == 3 ? scattered != 0 : filter.filter == Filter::Pcf && scattered == 0;
-        if (!thorough() && !chosen && (info.name != "boxes" || filter.filter != Filter::Hard)) continue;
-        const View3d view = builtin(info.name, scattered);
-        expectDeferredIsInline(device, view.name + " " + filter.name, view, withFilter(filter), worst,
-                               castsShadows(info.name));
-    }
+    for (const BuiltinInfo& info : builtinScenes())
+        compareBoth(device, std::string(info.name).c_str(), scattered, filter, worst);
 }
 
 TEST_P(DeferredIsInline, EverySceneWithItsOwnLights) {
     Worst worst;
-    for (const FilterCase& filter : kFilters) everyScene(device(), filter, 0, worst);
+    if (thorough())
+        everyScene(device(), kPcss, 0, worst);
+    else
+        for (const char* scene : {"boxes", "sundial"}) compareBoth(device(), scene, 0, kPcss, worst);
+    if (fullRun())
+        for (const FilterCase& filter : {kHard, kPcf1, kPcf3}) everyScene(device(), filter, 0, worst);
     worst.report(device(), "deferred against inline, own lights");
 }
 
-TEST_P(DeferredIsInline, EverySceneWith64LightsMore) {
+TEST_P(DeferredIsInline, OtherFilters) {
     Worst worst;
-    for (const FilterCase& filter : kFilters)
-        if (fullRun() || filter.radius == 3) everyScene(device(), filter, 64, worst);
-    worst.report(device(), "deferred against inline, 64 lights more");
+    compareBoth(device(), "columns", 64, kPcf3, worst);
+    if (thorough()) {
+        compareBoth(device(), "boxes", 0, kHard, worst);
+        compareBoth(device(), "sundial", 0, kPcf1, worst);
+        compareBoth(device(), "masked", 0, kPcssMany, worst);
+    }
+    worst.report(device(), "deferred against inline, other filters");
 }
 
-TEST_P(DeferredIsInline, With256LightsMore) {
+// Slots of 4 bits against themselves: evaluated shadows are rounded as stored ones are.
+TEST_P(DeferredIsInline, SlotsOfFourBits) {
+    Worst worst;
+    compareBoth(device(), "sundial", 64, kPcssFourBits, worst);
+    if (thorough()) {
+        compareBoth(device(), "courtyard", 0, kPcssFourBits, worst);
+        compareBoth(device(), "boxes", 0, kPcfFourBits, worst);
+    }
+    worst.report(device(), "deferred against inline, 4 bits");
+}
+
+TEST_P(DeferredIsInline, With64And256LightsMore) {
     Worst worst;
     if (fullRun()) {
-        for (const FilterCase& filter : kFilters) everyScene(device(), filter, 256, worst);
-    } else {
-        for (const char* scene : {"courtyard", "columns"}) {
-            const View3d view = builtin(scene, 256);
-            expectDeferredIsInline(device(), view.name, view, smallDesc(), worst, true);
+        for (const FilterCase& filter : {kPcss, kPcf3})
+            for (const std::uint32_t scattered : {64u, 256u}) everyScene(device(), filter, scattered, worst);
+    } else if (thorough()) {
+        compareBoth(device(), "sundial", 64, kPcssMany, worst);
+        compareBoth(device(), "courtyard", 256, kPcss, worst);
+        compareBoth(device(), "columns", 256, kPcss, worst);
+    }
+    worst.report(device(), "deferred against inline, many lights");
+}
+
+// The pattern turns with the frame's number, so each way needs a renderer of its own that is as many frames old.
+TEST_P(DeferredIsInline, PatternPerFrame) {
+    const View3d view = builtin("boxes");
+    RendererDesc desc = withFilter(kPcss);
+    desc.patternPerFrame = true;
+    Renderer inlined(device(), view.scene, desc), deferred(device(), view.scene, desc);
+    HdrPicture before;
+    Worst worst;
+    for (int frame = 0; frame < 3; ++frame) {
+        const HdrPicture expected = draw(inlined, view.camera, ShadowMode::Inline).linear;
+        const HdrPicture actual = draw(deferred, view.camera, ShadowMode::Deferred).linear;
+        worst.add(expectEqual(device(), "pattern of frame " + std::to_string(frame), expected, actual, 1), "pattern");
+        EXPECT_FALSE(actual.rgba == before.rgba) << "the pattern has not turned";
+        before = actual;
+    }
+    worst.report(device(), "pattern per frame");
+}
+
+// Bounds of the shadowmaps end searches, and change no bit; not even where frames without them came in between.
+TEST_P(DeferredIsInline, ShadowBoundsChangeNothing) {
+    for (const char* scene : {"sundial", "courtyard"}) {
+        if (!thorough() && scene == std::string("courtyard")) continue;
+        const View3d view = builtin(scene, 32);
+        SCOPED_TRACE(view.name);
+        RendererDesc desc = withFilter(kPcss);
+        desc.shadowBounds = false;
+        Renderer plain(device(), view.scene, desc);
+        const HdrPicture expected = draw(plain, view.camera, ShadowMode::Deferred).linear;
+        desc.shadowBounds = true;
+        Renderer bounded(device(), view.scene, desc);
+        draw(bounded, view.camera, ShadowMode::Off);  // draws the shadowmaps, makes no bounds
+        for (const ShadowMode mode : {ShadowMode::Deferred, ShadowMode::Inline}) {
+            const HdrPicture actual = draw(bounded, view.camera, mode).linear;
+            expectEqual(device(), view.name + " with shadow bounds", expected, actual, 0);
+            EXPECT_TRUE(mode == ShadowMode::Inline || actual.rgba == expected.rgba);
         }
     }
-    worst.report(device(), "deferred against inline, 256 lights more");
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ struct GoldenCase {
     double shareApart;
 };
 constexpr GoldenCase kCases[] = {{"courtyard", 2.0, 0.015}, {"columns", 0.5, 0.01}, {"cloth", 0.5, 0.01},
-                                 {"masked", 0.5, 0.01}};
+                                 {"masked", 0.5, 0.01},     {"sundial", 0.5, 0.01}};
 constexpr int kApart = 24;
 
 double shareApart(const Picture& a, const Picture& b) {
@@ -42,6 +42,7 @@ TEST_P(Golden, PicturesStay) {
         const View3d view = builtin(scene);
         RendererDesc desc = smallDesc();
         desc.atlasSizePx = 2048;
+        desc.pcss = kPcssMedium;
         const Frame frame = drawOnce(device(), view, desc, ShadowMode::Deferred);
         const Picture picture = toneMap(frame.linear, view.scene.exposureEv100.value());
         const std::filesystem::path file = folder / (std::string(scene) + ".png");

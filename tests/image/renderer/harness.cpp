@@ -132,6 +132,7 @@ RendererDesc smallDesc(std::uint32_t widthPx, std::uint32_t heightPx) {
     desc.widthPx = widthPx;
     desc.heightPx = heightPx;
     desc.atlasSizePx = thorough() ? 2048 : 1024;
+    desc.pcss = kFewTaps;
     return desc;
 }
 

@@ -46,7 +46,9 @@ View3d builtin(const std::string& name, std::uint32_t scattered = 0);
 /// The same place seen by an orthographic camera that shows about as much at `focusMetres`.
 View3d orthographic(View3d view, float focusMetres);
 
-/// Small enough for software devices: 240x135 and an atlas of 2048 (under sanitizers 1024).
+/// Of Filter::Pcss where the number of taps does not matter: software devices are slow.
+inline constexpr PcssTaps kFewTaps = {4, 6};
+/// Small enough for software devices: few taps, 240x135 and an atlas of 2048 (under sanitizers 1024).
 RendererDesc smallDesc(std::uint32_t widthPx = 240, std::uint32_t heightPx = 135);
 
 struct Frame {

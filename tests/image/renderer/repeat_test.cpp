@@ -16,7 +16,7 @@ std::string hashOfLinear(const HdrPicture& picture) {
 // With a quarter of the slots it is chance which tiles get one; without overflow, which slot a tile gets.
 void expectOneHash(const Device& device, const RendererDesc& desc, const char* name) {
     SCOPED_TRACE(name);
-    const View3d view = builtin("columns", 64);
+    const View3d view = builtin("sundial", 64);
     HdrPicture first;
     for (int run = 0; run < 2; ++run) {
         Renderer renderer(device, view.scene, desc);
@@ -26,6 +26,9 @@ void expectOneHash(const Device& device, const RendererDesc& desc, const char* n
             EXPECT_EQ(hashOfLinear(picture), hashOfLinear(first)) << "run " << run << ", frame " << frame;
             EXPECT_TRUE(picture.rgba == first.rgba) << "run " << run << ", frame " << frame;
         }
+        // The same with two frames in flight: none is waited for before the next but one is recorded.
+        for (int frame = 0; frame < 4; ++frame) renderer.renderFrame(view.camera, ShadowMode::Deferred);
+        EXPECT_TRUE(renderer.readPicture().rgba == first.rgba) << "run " << run << ", in flight";
     }
 }
 
@@ -51,7 +54,8 @@ void expectAlike(const HdrPicture& expected, const HdrPicture& actual) {
 
 TEST_P(Repeated, ShadowmapsAreKept) {
     Worst worst;
-    for (const char* scene : {"courtyard", "columns", "cloth"}) {
+    for (const char* scene : {"sundial", "columns", "courtyard"}) {
+        if (!fullRun() && scene == std::string("courtyard")) continue;
         if (!thorough() && scene != std::string("columns")) continue;
         SCOPED_TRACE(scene);
         const View3d view = builtin(scene);

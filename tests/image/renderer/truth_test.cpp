@@ -129,6 +129,18 @@ const std::vector<Truth>& cachedTruth(const View3d& view, const RendererDesc& de
     return truth;
 }
 
+// The scene without any light.
+const HdrPicture& cachedNight(const Device& device, const View3d& view, const RendererDesc& desc) {
+    static std::map<std::string, HdrPicture> known;
+    HdrPicture& picture = known[device.info().name + view.name.substr(0, view.name.find(" light "))];
+    if (picture.rgba.empty()) {
+        View3d night = view;
+        night.scene.lights.clear();
+        picture = drawOnce(device, night, desc, ShadowMode::Off).linear;
+    }
+    return picture;
+}
+
 Figures checkLight(const Device& device, const View3d& view, const FilterCase& filter) {
     const std::string name = view.name + " " + filter.name;
     SCOPED_TRACE(name);
@@ -139,9 +151,7 @@ Figures checkLight(const Device& device, const View3d& view, const FilterCase& f
     Renderer renderer(device, view.scene, desc);
     const HdrPicture arrived = draw(renderer, view.camera, ShadowMode::Deferred).linear;
     const HdrPicture all = draw(renderer, view.camera, ShadowMode::Off).linear;
-    View3d night = view;
-    night.scene.lights.clear();
-    const HdrPicture none = drawOnce(device, night, desc, ShadowMode::Off).linear;
+    const HdrPicture& none = cachedNight(device, view, desc);
     const Figures f = count(truth, all, arrived, none);
     f.print(device, name);
     EXPECT_GT(f.lit + f.dark, 300u) << "hardly a pixel was counted";

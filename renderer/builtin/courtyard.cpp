@@ -128,7 +128,7 @@ void makeMaterials(Parts& parts) {
 
 // Once around the fountain in a loop of the scene's animation: for films, and to look for what pops.
 void addFlight(SceneBuilder& b) {
-    constexpr int kKeys = 96;
+    constexpr int kKeys = 240;
     const auto view = [](float t) {
         const float angle = 6.28318530718f * t;
         const glm::vec3 eye(-9.0f * std::cos(angle), 3.1f + 1.4f * std::sin(2.0f * angle + 0.6f), 5.2f * std::sin(angle));

@@ -79,6 +79,15 @@ TEST_F(Program, WrongUsageIsRefused) {
                                   "render --filter soft",
                                   "render --pcf-radius 0",
                                   "render --pcf-radius 4",
+                                  "render --pcss-taps 16",
+                                  "render --pcss-taps 0,24",
+                                  "render --pcss-taps 16,65",
+                                  "render --pcss-taps 16,24,",
+                                  "render --pcss-taps -1,4",
+                                  "render --pcss-taps lowest",
+                                  "render --visibility-bits 5",
+                                  "render --visibility-bits 0",
+                                  "render --pattern-per-frame yes",
                                   "render --shadows never",
                                   "render --exposure nan",
                                   "render --exposure 1e9",
@@ -226,6 +235,20 @@ TEST_F(Program, TimePasses) {
     expectGood("render thrown.gltf --size 64x36 --time 0.9");
     std::ofstream(folder_ / "slide.gltf") << slidingTriangle(2.0e15f);
     expectRefused("render slide.gltf --size 64x36 --time 0.9 --quiet", 2);  // a value beyond 1e15
+}
+
+TEST_F(Program, SoftShadowsHaveTheirOptions) {
+    const std::string render = "render boxes --size 96x54 --exposure 3 ";
+    expectGood(render + "--filter pcss --pcss-taps medium -o soft.png");
+    expectGood(render + "--pcss-taps 16,24 --no-shadow-bounds -o searched.png");
+    expectGood("compare soft.png searched.png");
+    expectGood(render + "--filter hard -o hard.png");
+    expectGood(render + "--pattern-per-frame --frames 2 -o turned.png");
+    for (const char* other : {"hard.png", "turned.png"})
+        EXPECT_EQ(run(std::string("compare soft.png ") + other).exitCode, 1) << other;
+    expectGood(render + "--visibility-bits 4 -o four.png");
+    expectGood("compare soft.png four.png --tolerance 15");
+    EXPECT_EQ(run("compare soft.png four.png --tolerance 1").exitCode, 1);
 }
 
 TEST_F(Program, FramesAreCleanUnderValidation) {

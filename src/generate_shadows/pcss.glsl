@@ -35,10 +35,12 @@ float filterTap(ShadowPoint s, PcssKernel k, vec2 corner) {
 float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius) {
     precise float sum = 0.0;
     bool inside = !mayLeave(s, k, radius);
+    vec2 direction = vec2(1.0, 0.0);
     for (uint i = 0u; i < frame.random.w; ++i) {
         precise float share = sqrt((float(i) + 0.5) * (1.0 / float(kPcssFilterTaps)));
         precise float away = share * radius;
-        vec2 offset = tapOffset(k, i);
+        vec2 offset = tapOffset(k, direction);
+        direction = nextDirection(direction);
         precise vec2 corner = fma(offset, vec2(away), k.corner);
         if (!inside && leavesFace(s, k, corner)) {
             float plane, stored;

@@ -2,7 +2,6 @@
 #ifndef GNOMON_GENERATE_SHADOWS_PCSS_KERNEL_GLSL
 #define GNOMON_GENERATE_SHADOWS_PCSS_KERNEL_GLSL
 
-#include "generate_shadows/golden_spiral.glsl"
 #include "generate_shadows/shadowmap.glsl"
 
 // Nearer blockers are searched for as if they were at this share of the receiver's depth.
@@ -85,10 +84,20 @@ PcssKernel pcssKernelOf(GpuLight light, ShadowPoint s, uvec2 pixel) {
     return k;
 }
 
-// Tap `i` at radius 1, in texels from the receiver.
-vec2 tapOffset(PcssKernel k, uint i) {
-    precise vec2 offset = vec2(fma(k.right.x, kGoldenSpiral[i].x, k.down.x * kGoldenSpiral[i].y),
-                               fma(k.right.y, kGoldenSpiral[i].x, k.down.y * kGoldenSpiral[i].y));
+// Directions of the taps, in the pattern's axes: multiples of the golden angle, pi (3 - sqrt 5), from (1, 0) on. One
+// turned into the next, not a table: Mesa's lavapipe takes half a minute to compile a loop that reads one.
+// Source: Vogel 1979, "A better way to construct the sunflower head".
+vec2 nextDirection(vec2 d) {
+    const float cosine = -0.7373688780783197;
+    const float sine = 0.6754902942615238;
+    precise vec2 turned = vec2(fma(cosine, d.x, -sine * d.y), fma(sine, d.x, cosine * d.y));
+    return turned;
+}
+
+// A tap at radius 1, in texels from the receiver.
+vec2 tapOffset(PcssKernel k, vec2 direction) {
+    precise vec2 offset = vec2(fma(k.right.x, direction.x, k.down.x * direction.y),
+                               fma(k.right.y, direction.x, k.down.y * direction.y));
     return offset;
 }
 

@@ -71,13 +71,15 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visi
     precise float inverse = k.radius1 > 0.0 ? 1.0 / k.radius1 : 0.0;
     precise float farthest0 = k.radius1 > 0.0 ? -(k.radius0 + kTapTexels * k.texel) * inverse : -2.0;
     Blockers found = Blockers(0.0, 0.0, true);
+    vec2 direction = vec2(1.0, 0.0);
     if (!mayLeave(s, k, reach)) {
         float needed;
         if (knownByBounds(s, k, reach, needed, visibility)) return -1.0;
         for (uint i = 0u; i < frame.random.z; ++i) {
             float radius = searchRadius(i, reach);
             if (radius > needed && !found.allOcclude) break;  // beyond, there is no blocker
-            vec2 offset = tapOffset(k, i);
+            vec2 offset = tapOffset(k, direction);
+            direction = nextDirection(direction);
             precise vec2 first = floor(fma(offset, vec2(radius), k.corner));
             vec4 stored = gatherShadowTexels(s, first) * k.sign;
             countBlockers(planeDepthsAt(k, first), stored, fma(radius, inverse, farthest0), found);
@@ -85,7 +87,8 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visi
     } else {
         for (uint i = 0u; i < frame.random.z; ++i) {
             float radius = searchRadius(i, reach);
-            vec2 offset = tapOffset(k, i);
+            vec2 offset = tapOffset(k, direction);
+            direction = nextDirection(direction);
             precise vec2 corner = fma(offset, vec2(radius), k.corner);
             vec4 plane, stored;
             if (leavesFace(s, k, corner)) {

@@ -206,15 +206,15 @@ Scene makeSundial() {
     sun.kind = LightKind::Directional;
     sun.direction = glm::normalize(glm::vec3(-0.62f, -0.55f, -0.35f));
     sun.colour = {1.0f, 0.93f, 0.82f};
-    sun.intensity = 30.0f;
+    sun.intensity = 60.0f;
     sun.sourceRadius = 0.00465f;
     b.scene.lights.push_back(sun);
     addPoint(b, {-1.6f, 0.9f, 0.9f}, {1.0f, 0.55f, 0.25f}, 6.0f, 4.0f);
     b.camera("default", {1.3f, 2.1f, 2.9f}, {-0.1f, 0.9f, -1.5f}, 0.9f);
     b.camera("grazing", {0.2f, 0.35f, 6.0f}, {0, 0.9f, -20.0f}, 0.7f);
-    b.scene.skyColour = {1.1f, 1.5f, 2.3f};
-    b.scene.groundColour = {0.7f, 0.6f, 0.5f};
-    return finished(b, 4.0f);
+    b.scene.skyColour = {2.4f, 3.6f, 6.0f};
+    b.scene.groundColour = {1.2f, 1.0f, 0.8f};
+    return finished(b, 3.7f);
 }
 
 Scene makeSingleTriangle() {

@@ -13,9 +13,10 @@ GNOMON_IMAGE_TEST_SUITE(Quantisation);
 
 constexpr std::uint32_t kLargest = 2;   // of 255
 constexpr double kMeanAbsolute = 0.05;  // of 255
-// With 4 bits a step is 17 times as wide. One light errs by at most 17 * 0.8 + 1 = 14.6 steps of a byte.
-constexpr std::uint32_t kLargestOfFour = 15;
-constexpr double kMeanAbsoluteOfFour = 0.5;
+// With 4 bits a step is 17 times as wide: one light errs by at most 17 * 0.8 + 1 = 14.6 steps of a byte, several by a
+// little more. Measured: 13 and 0.42 (lavapipe), 15 and 0.49 (SwiftShader).
+constexpr std::uint32_t kLargestOfFour = 20;
+constexpr double kMeanAbsoluteOfFour = 0.75;
 
 void print(const Device& device, const std::string& what, const RendererDesc& desc, const Difference& error) {
     std::printf("[ figure   ] %s: %s: largest %u/255, mean %.4f/255, %.2f %% of pixels\n", device.info().name.c_str(),

@@ -15,9 +15,9 @@ constexpr std::uint32_t kLargest = 2;   // of 255
 constexpr double kMeanAbsolute = 0.05;  // of 255
 // With 4 bits a step is 17 times as wide: a light of the picture's own brightness errs by at most 17 * 0.8 + 1 = 14.6
 // steps of a byte. Near its lamp a light is many times as bright, and what 4 bits take for dark, below 1/900 of it, is
-// seen: 20 at most was measured, in the courtyard.
+// seen. Measured at most: 13 and 0.42 (lavapipe), 15 and 0.49 (SwiftShader), 20 and 0.46 (NVIDIA H100).
 constexpr std::uint32_t kLargestOfFour = 24;
-constexpr double kMeanAbsoluteOfFour = 0.5;
+constexpr double kMeanAbsoluteOfFour = 0.75;
 
 void print(const Device& device, const std::string& what, const RendererDesc& desc, const Difference& error) {
     std::printf("[ figure   ] %s: %s: largest %u/255, mean %.4f/255, %.2f %% of pixels\n", device.info().name.c_str(),

@@ -27,7 +27,8 @@ for camera in arcade fountain; do
 done
 
 step "Rendering the same with shadows inside the lighting shader, for comparison"
-quietly build/demo-inline.log "$gnomon" render courtyard --shadows inline --size "$size" -o out/courtyard_inline.png
+quietly build/demo-inline.log "$gnomon" render courtyard --shadows inline --frames 3 --size "$size" \
+    --list-entries 250000 -o out/courtyard_inline.png
 step "Deferred against inline"
 "$gnomon" compare out/courtyard.png out/courtyard_inline.png --tolerance 1
 

@@ -90,7 +90,8 @@ void benchWithin(const renderer::VulkanInstance& instance, const BenchOptions& o
     renderer::RendererDesc desc = session.rendererDesc();
     desc.inlineNeedsLists = true;
     renderer::Renderer renderer(session.device(), session.scene(), desc);
-    Measurement measured = {session, measure(renderer, session, options), std::nullopt};
+    Measurement measured = {session, measure(renderer, session, options), std::nullopt, options.warmUp,
+                            options.framesPerSecond};
     checkLists(measured.variants);
     if (options.floor) measured.rates = renderer::measureDeviceRates(session.device());
     if (!options.json.empty()) {

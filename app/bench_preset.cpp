@@ -81,7 +81,7 @@ std::vector<Share> sharesOf(const Variant& variant) {
     std::vector<Share> shares;
     shares.push_back({"prepare", spreadOf(variant.prepare()).median, true});
     for (const char* name :
-         {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "generate_shadows"})
+         {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "shadow_bounds", "generate_shadows"})
         if (const Variant::Row* pass = variant.pass(name))
             shares.push_back({name, spreadOf(pass->milliseconds).median});
     shares.push_back({"lighting", spreadOf(variant.lighting()).median});

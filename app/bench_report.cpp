@@ -97,11 +97,17 @@ std::vector<Ratio> ratiosOf(const std::vector<Variant>& variants) {
 }  // namespace
 
 void Variant::add(const renderer::FrameReport& report) {
+    // A pass that some frames leave out takes no time in them.
+    const std::size_t before = compute_.size();
     for (const renderer::PassTime& pass : report.passes) {
         auto row = std::find_if(passes_.begin(), passes_.end(), [&](const Row& r) { return r.name == pass.name; });
-        if (row == passes_.end()) row = passes_.insert(row, {pass.name, pass.drawing, isStatisticsPass(pass), {}});
+        if (row == passes_.end()) {
+            const std::vector<double> none(before, 0.0);
+            row = passes_.insert(row, {pass.name, pass.drawing, isStatisticsPass(pass), none});
+        }
         row->milliseconds.push_back(pass.milliseconds);
     }
+    for (Row& row : passes_) row.milliseconds.resize(before + 1, 0.0);
     const Totals totals = totalsOf(report.passes);
     drawing_.push_back(totals.drawing);
     compute_.push_back(totals.compute);
@@ -181,7 +187,9 @@ Json describeBench(const Measurement& measured) {
     out["lightsVisible"] = s.lights.visible;
     out["meanLightsPerTile"] = meanPerTile(s.earlyEntries, s);
     out["meanShadowedLightsPerTile"] = meanPerTile(s.earlyCastingEntries, s);
+    out["warmUp"] = measured.warmUp;
     out["frames"] = variants.front().compute().size();
+    out["framesPerSecond"] = measured.framesPerSecond;
     if (measured.rates)
         out["rates"] = {{"copyBytesPerSecond", measured.rates->bytesPerSecond},
                         {"fetchesPerSecond", measured.rates->fetchesPerSecond},

@@ -39,6 +39,8 @@ struct Measurement {
     const Session& session;
     std::vector<Variant> variants;
     std::optional<renderer::DeviceRates> rates;  ///< where floors were asked for
+    std::uint32_t warmUp = 0;                    ///< rounds that did not count
+    double framesPerSecond = 0.0;                ///< of the animations' time; 0: they stood
 };
 
 /// Null where that variant was not measured.

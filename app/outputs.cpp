@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <set>
 
 #include "app/errors.h"
 #include "renderer/picture/picture.h"
@@ -25,17 +26,14 @@ const CLI::Validator& fileName() {
 }
 
 void checkOutputs(std::span<const std::string> outputs, std::span<const std::string> inputs) {
-    for (std::size_t i = 0; i < outputs.size(); ++i) {
-        if (outputs[i].empty()) continue;
-        const std::filesystem::path path = canonical(outputs[i]);
-        for (const std::string& input : inputs) {
-            if (!input.empty() && canonical(input) == path)
-                throw UsageError(fmt::format("'{}' is an input; it will not be overwritten.", outputs[i]));
-        }
-        for (std::size_t k = 0; k < i; ++k) {
-            if (!outputs[k].empty() && canonical(outputs[k]) == path)
-                throw UsageError(fmt::format("'{}' is named for two outputs.", outputs[i]));
-        }
+    std::set<std::filesystem::path> read, written;
+    for (const std::string& input : inputs)
+        if (!input.empty()) read.insert(canonical(input));
+    for (const std::string& output : outputs) {
+        if (output.empty()) continue;
+        const std::filesystem::path path = canonical(output);
+        if (read.contains(path)) throw UsageError(fmt::format("'{}' is an input; it will not be overwritten.", output));
+        if (!written.insert(path).second) throw UsageError(fmt::format("'{}' is named for two outputs.", output));
     }
     for (const std::string& file : outputs) {
         if (!file.empty()) renderer::checkWritable(file);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/errors.h"
@@ -99,8 +100,10 @@ int render(const RenderOptions& options) {
     if (!extension.empty() && extension != ".png" && extension != ".PNG")
         throw UsageError(fmt::format("'{}' is no name for a PNG file: it must end in .png.", options.png));
     if (options.sequence && options.png.empty()) throw UsageError("--sequence needs -o NAME.png to name its files by.");
-    const std::string png = options.sequence ? sequenceFile(options.png, 0) : options.png;
-    const std::string outputs[] = {png, options.exr, options.statistics};
+    std::vector<std::string> outputs = {options.exr, options.statistics};
+    if (!options.sequence) outputs.push_back(options.png);
+    for (std::uint32_t i = 0; options.sequence && i < options.frames; ++i)
+        outputs.push_back(sequenceFile(options.png, i));
     checkOutputs(outputs, {&options.settings.scene, 1});
     const renderer::VulkanInstance instance(instanceDescOf(options.settings));
     renderWithin(instance, options);

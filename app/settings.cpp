@@ -83,7 +83,7 @@ void addSettings(CLI::App& command, Settings& s) {
             "--light-density", s.lightDensity,
             "Shadowed lights per tile, in the mean, that --lights shall give in this picture; they take the place "
             "of the scene's own point and spot lights")
-        ->check(CLI::Range(0.1f, 64.0f))
+        ->check(numberWithin(0.1, 64.0))
         ->needs("--lights");
     command.add_option("--seed", s.seed, "Of scattered lights")
         ->check(CLI::Range(std::int64_t{0}, std::int64_t{0xFFFFFFFF}))
@@ -94,7 +94,7 @@ void addSettings(CLI::App& command, Settings& s) {
     command.add_option("--pcf-radius", s.pcfRadius, "Texels")->check(CLI::Range(1, 3))->capture_default_str();
     command
         .add_option("--pcss-taps", s.taps,
-                    "low, medium, high, or SEARCH,FILTER: texels of the search and taps of the filter, as in 16,24")
+                    "low, medium, high, or SEARCH,FILTER: taps of the search and of the filter, as in 16,24")
         ->capture_default_str();
     command.add_flag("--pattern-per-frame", s.patternPerFrame, "Turn the sample pattern of pcss from frame to frame");
     command.add_flag("--no-shadow-bounds", s.noShadowBounds,

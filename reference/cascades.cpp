@@ -50,10 +50,11 @@ Visibility throughCascades(std::span<const ShadowViewModel> cascades, const Pixe
         if (fit.holds == Verdict::Never) continue;
         Visibility here = sample(i);
         if (fit.blend.hi > 0) {
-            const Verdict next = i + 1 < cascades.size() ? fitIn(cascades[i + 1], pixel).holds : Verdict::Never;
-            Visibility beyond = next == Verdict::Never ? kLit : sample(i + 1);
-            if (next == Verdict::May) beyond = merge(beyond, kLit);
-            here = mixed(here, beyond, fit.blend);
+            const bool last = i + 1 == cascades.size();
+            const Verdict next = last ? Verdict::Must : fitIn(cascades[i + 1], pixel).holds;
+            const Visibility alone = here;
+            if (next != Verdict::Never) here = mixed(here, last ? kLit : sample(i + 1), fit.blend);
+            if (next == Verdict::May) here = merge(here, alone);
         }
         result = merge(result, here);
         if (fit.holds == Verdict::Must) return result;

@@ -230,7 +230,9 @@ bool View::statistics(std::uint64_t frameNumber, FrameStatistics& out) const noe
         out.listEntries = slot.tiles * roundUpToEarlyWord(state.context->desc.fixedListEntriesPerTile);
         out.recommendedListEntries = out.listEntries;
     }
-    out.recommendedVisibilitySlots = recommend(c.visibilitySlots);
+    // Tiles without list space asked for no slot; their casting lights may need one each.
+    const bool asked = c.listOverflowTiles == 0 || !state.desc.statistics;
+    out.recommendedVisibilitySlots = recommend(asked ? c.visibilitySlots : c.earlyCastingEntries);
     out.tilesWithGeometry = c.tilesWithGeometry;
     out.approximateEntries = c.approximateEntries;
     out.earlyEntries = c.earlyEntries;

@@ -36,7 +36,8 @@ enum class Filter : std::uint8_t {
     Pcss,  ///< percentage closer soft shadows: a penumbra as wide as the light's source makes it
 };
 
-/// Taps of Filter::Pcss. A pixel without a blocker takes searchTaps texels, one in penumbra also filterTaps gathers.
+/// Taps of Filter::Pcss, each a gather of four texels. A pixel outside of penumbrae takes searchTaps at most, one inside
+/// also filterTaps.
 struct PcssTaps {
     std::uint32_t searchTaps = 16;  ///< 1 to 64
     std::uint32_t filterTaps = 24;  ///< 1 to 64
@@ -154,7 +155,7 @@ struct ShadowAtlas {
 
 /// One frame. Images are read by compute shaders (stage COMPUTE_SHADER, access SHADER_SAMPLED_READ); the host makes
 /// their contents visible to that before the phase that reads them: depth, face normals and receiver flags before the
-/// hierarchical depth, atlases before phase 4.
+/// hierarchical depth, atlases before recordShadowBounds(), or before phase 4 without it.
 struct FrameDesc {
     /// Grows by one per frame. The frame with frameNumber - framesInFlight must have finished on the device.
     std::uint64_t frameNumber = 0;
@@ -169,7 +170,7 @@ struct FrameDesc {
     HostImage depthPyramid;
     std::span<const ShadowAtlas> atlases;  ///< up to 4
     /// recordShadowBounds() will be called in this frame. Bounds are kept from frame to frame while ShadowView::changed
-    /// is false; after a recorded frame that was never submitted it must be true once.
+    /// is false; set that true once after a recorded frame that was never submitted.
     bool shadowBounds = false;
     float subsurfaceBiasMetres = 0.02f;
     /// Turns the sample pattern of Filter::Pcss from frame to frame, for hosts that accumulate frames.
@@ -187,8 +188,8 @@ struct FrameStatistics {
     std::uint32_t slotOverflowEntries = 0;
     std::uint32_t accurateExceedsApproximate = 0;  ///< must be 0
     std::uint32_t evaluateTiles = 0;               ///< shaded by the second lighting pipeline
-    std::uint32_t recommendedListEntries = 0;      ///< capacities with which this frame would not have overflowed
-    std::uint32_t recommendedVisibilitySlots = 0;
+    std::uint32_t recommendedListEntries = 0;      ///< capacities with which this frame would not have overflowed;
+    std::uint32_t recommendedVisibilitySlots = 0;  ///< where lists overflow: without `statistics` a lower bound
     // Only with ViewDesc::statistics:
     std::uint32_t tilesWithGeometry = 0;
     std::uint32_t approximateEntries = 0, earlyEntries = 0, earlyCastingEntries = 0;

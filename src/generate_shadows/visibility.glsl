@@ -30,20 +30,23 @@ float viewVisibility(uint viewIndex, GpuLight light, Receiver receiver) {
     return pcssVisibility(light, s, receiver.pixel);
 }
 
-// The first cascade that holds the receiver, blended with the next one; what neither holds is lit.
+// The first cascade that holds the receiver, blended with the next one where that holds it too; the last blends into
+// light.
 float cascadedVisibility(GpuLight light, Receiver receiver) {
     uint count = cascadeCount(light);
     float border;
     uint cascade = cascadeOf(light, receiver.positionWs, border);
     if (cascade == count) return 1.0;
+    bool last = cascade + 1u == count;
+    float ignored;
+    if (border > 0.0 && !last && !cascadeHolds(light.shadowView + cascade + 1u, receiver.positionWs, ignored)) {
+        border = 0.0;
+    }
     precise float weight = 1.0 - border;
     precise float visibility = 0.0;
     for (uint i = 0u; i < 2u; ++i) {  // a loop, so that the filter's code exists once
-        float ignored;
-        bool holds = i == 0u || (cascade + 1u < count &&
-                                 cascadeHolds(light.shadowView + cascade + 1u, receiver.positionWs, ignored));
         precise float seen = 1.0;
-        if (holds) seen = viewVisibility(light.shadowView + cascade + i, light, receiver);
+        if (i == 0u || !last) seen = viewVisibility(light.shadowView + cascade + i, light, receiver);
         visibility += weight * seen;
         if (border == 0.0) break;
         weight = border;

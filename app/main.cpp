@@ -33,6 +33,7 @@ int parseAndWork(int argc, char** argv) {
     Work work;
     addRenderCommand(app, work);
     addBenchCommand(app, work);
+    addVerifyCommand(app, work);
     addCompareCommand(app, work);
     addDevicesCommand(app, work);
     addScenesCommand(app, work);

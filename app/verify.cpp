@@ -1,0 +1,165 @@
+// gnomon verify: the shadows of one frame against ray-traced truth, light by light.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/errors.h"
+#include "app/outputs.h"
+#include "app/progress.h"
+#include "app/session.h"
+#include "app/verify_maps.h"
+#include "app/verify_report.h"
+#include "renderer/scene/pose.h"
+
+namespace gnomon::app {
+namespace {
+
+using renderer::LightTruthDesc;
+
+struct VerifyOptions {
+    Settings settings;
+    std::string json, maps, edgeSet = "footprint";
+    std::vector<std::uint32_t> lights;  // empty: all
+    std::uint32_t rays = 256;
+};
+
+class Verification {
+public:
+    Verification(const Session& session, const VerifyOptions& options)
+        : session_(session),
+          options_(options),
+          renderer_(session.device(), session.scene(), session.rendererDesc()),
+          pose_(poseAt(session.scene(), options.settings.time)),
+          camera_(posedCamera(session.scene(), pose_, session.camera())),
+          traced_(session.scene(), pose_, glm::dvec3(camera_.worldFromCamera[3])),
+          extent_{session.rendererDesc().widthPx, session.rendererDesc().heightPx} {
+        renderer_.renderFrame(session.camera(), renderer::ShadowMode::Deferred, options.settings.time);
+        receivers_ =
+            receiversOf(traced_, camera_, extent_.widthPx, extent_.heightPx, renderer_.readTriangleIds());
+    }
+
+    VerifyResult run() {
+        const Stopwatch watch;
+        VerifyResult result;
+        std::vector<std::uint32_t> wanted = options_.lights;
+        for (std::uint32_t i = 0; wanted.empty() && i < pose_.lights.size(); ++i) all_.push_back(i);
+        if (wanted.empty()) wanted = all_;
+        std::erase_if(wanted, [&](std::uint32_t i) { return !pose_.lights[i].casts; });
+        double said = -1.0;
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            verifyLight(wanted[i], result);
+            if (i + 1 != wanted.size() && watch.seconds() - said < 1.0) continue;
+            said = watch.seconds();
+            sayProgress(fmt::format("Light {} of {}, {:.1f} s.", i + 1, wanted.size(), said));
+        }
+        result.seconds = watch.seconds();
+        return result;
+    }
+
+private:
+    void verifyLight(std::uint32_t index, VerifyResult& result) {
+        const std::vector<float> visibility = renderer_.readVisibility(index);
+        LightTruthDesc desc;
+        desc.light = pose_.lights[index];
+        desc.views = renderer_.shadowViews(index);
+        desc.viewsOrigin = renderer_.frameOrigin();
+        desc.soft = soft();
+        desc.softRaysPerSide = raysPerSide();
+        desc.seed = options_.settings.seed * 1'000'003u + index;
+        desc.edgeSet = options_.edgeSet == "circle" ? renderer::EdgeSet::Circle : renderer::EdgeSet::Footprint;
+        const std::vector<renderer::PixelTruth> truth =
+            traceLight(traced_, receivers_, extent_, desc, visibility);
+        VerifiedLight light;
+        light.index = index;
+        light.name = desc.light.name;
+        light.kind = desc.light.kind;
+        light.hasShadowmap = !desc.views.empty();
+        light.figures = figuresOf(truth, visibility, extent_, soft());
+        if (light.figures.opaque.pairs + light.figures.subsurface.pairs == 0) {
+            ++result.unseen;
+            return;
+        }
+        if (!options_.maps.empty())
+            writePng(errorMap(truth, visibility, extent_, soft()),
+                     std::filesystem::path(options_.maps) / mapFileName(light));
+        result.total += light.figures;
+        result.lights.push_back(std::move(light));
+    }
+
+    [[nodiscard]] bool soft() const { return session_.rendererDesc().filter == Filter::Pcss; }
+    [[nodiscard]] std::uint32_t raysPerSide() const {
+        std::uint32_t side = 1;
+        while (side * side < options_.rays) ++side;
+        return side;
+    }
+
+    const Session& session_;
+    const VerifyOptions& options_;
+    renderer::Renderer renderer_;
+    renderer::Pose pose_;
+    renderer::SceneCamera camera_;
+    renderer::TracedScene traced_;
+    renderer::TruthExtent extent_;
+    std::vector<renderer::TruthReceiver> receivers_;
+    std::vector<std::uint32_t> all_;
+};
+
+void verifyWithin(const renderer::VulkanInstance& instance, const VerifyOptions& options) {
+    const Session session(instance, options.settings);
+    for (const std::uint32_t light : options.lights)
+        if (light >= session.scene().lights.size())
+            throw UsageError(fmt::format("There is no light #{}: the scene has {}, counted from 0.", light,
+                                         session.scene().lights.size()));
+    const Stopwatch setUp;
+    Verification verification(session, options);
+    sayProgress(fmt::format("Drawn, and made ready to trace, in {:.1f} s.", setUp.seconds()));
+    const VerifyResult result = verification.run();
+    if (!options.json.empty()) writeJson(describe(session, result), options.json);
+    printVerified(session, result);
+    if (!options.maps.empty()) fmt::print("Written: maps of {} lights in {}\n", result.lights.size(), options.maps);
+}
+
+void prepareFolder(const std::string& folder) {
+    if (folder.empty()) return;
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (!std::filesystem::is_directory(folder))
+        throw UsageError(fmt::format("'{}' is no folder and cannot be made one.", folder));
+    renderer::checkWritable(std::filesystem::path(folder) / "light_000.png");
+}
+
+int verify(const VerifyOptions& options) {
+    rendererDescOf(options.settings);  // refuses wrong settings before anything is started
+    if (options.settings.unquantised) throw UsageError("--unquantised has no meaning here: verify reads what is stored.");
+    checkOutputs({&options.json, 1}, {&options.settings.scene, 1});
+    prepareFolder(options.maps);
+    const renderer::VulkanInstance instance(instanceDescOf(options.settings));
+    verifyWithin(instance, options);
+    return exitCodeOf(instance, options.settings);
+}
+
+}  // namespace
+
+void addVerifyCommand(CLI::App& app, Work& chosen) {
+    CLI::App* command = app.add_subcommand("verify", "Compare the shadows of one frame with ray-traced truth");
+    const auto options = std::make_shared<VerifyOptions>();
+    addSettings(*command, options->settings);
+    command->add_option("--json", options->json, "All figures, a JSON file")->check(fileName());
+    command->add_option("--maps", options->maps, "A folder for one picture per light: truth, result, errors")
+        ->check(fileName());
+    command->add_option("--light", options->lights, "Only this light of the scene, counted from 0; may be repeated");
+    command->add_option("--rays", options->rays, "Soft truth: rays to the source, rounded up to a square number")
+        ->check(CLI::Range(256u, 65536u))
+        ->capture_default_str();
+    command
+        ->add_option("--edge-set", options->edgeSet,
+                     "Around a pixel: as far as pixels and shadow texels fall on its face, or a circle on it")
+        ->check(CLI::IsMember({"footprint", "circle"}))
+        ->capture_default_str();
+    command->callback([&chosen, options] { chosen = [options] { return verify(*options); }; });
+}
+
+}  // namespace gnomon::app

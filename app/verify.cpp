@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <numeric>
 
 #include "app/commands.h"
 #include "app/errors.h"
@@ -23,7 +24,7 @@ struct VerifyOptions {
     Settings settings;
     std::string json, maps, edgeSet = "footprint";
     std::vector<std::uint32_t> lights;  // empty: all
-    std::uint32_t rays = 256;
+    std::uint32_t rays = 256, subset = 16;
 };
 
 class Verification {
@@ -45,8 +46,10 @@ public:
         const Stopwatch watch;
         VerifyResult result;
         std::vector<std::uint32_t> wanted = options_.lights;
-        for (std::uint32_t i = 0; wanted.empty() && i < pose_.lights.size(); ++i) all_.push_back(i);
-        if (wanted.empty()) wanted = all_;
+        if (wanted.empty()) {
+            wanted.resize(pose_.lights.size());
+            std::iota(wanted.begin(), wanted.end(), 0u);
+        }
         std::erase_if(wanted, [&](std::uint32_t i) { return !pose_.lights[i].casts; });
         double said = -1.0;
         for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -68,6 +71,7 @@ private:
         desc.viewsOrigin = renderer_.frameOrigin();
         desc.soft = soft();
         desc.softRaysPerSide = raysPerSide();
+        desc.subsetOf = options_.subset;
         desc.seed = options_.settings.seed * 1'000'003u + index;
         desc.edgeSet = options_.edgeSet == "circle" ? renderer::EdgeSet::Circle : renderer::EdgeSet::Footprint;
         const std::vector<renderer::PixelTruth> truth =
@@ -104,7 +108,6 @@ private:
     renderer::TracedScene traced_;
     renderer::TruthExtent extent_;
     std::vector<renderer::TruthReceiver> receivers_;
-    std::vector<std::uint32_t> all_;
 };
 
 void verifyWithin(const renderer::VulkanInstance& instance, const VerifyOptions& options) {
@@ -153,6 +156,9 @@ void addVerifyCommand(CLI::App& app, Work& chosen) {
     command->add_option("--light", options->lights, "Only this light of the scene, counted from 0; may be repeated");
     command->add_option("--rays", options->rays, "Soft truth: rays to the source, rounded up to a square number")
         ->check(CLI::Range(256u, 65536u))
+        ->capture_default_str();
+    command->add_option("--subset", options->subset, "Soft truth is traced for one tile of pixels in so many")
+        ->check(CLI::IsMember({1, 4, 16}))
         ->capture_default_str();
     command
         ->add_option("--edge-set", options->edgeSet,

@@ -27,7 +27,8 @@ void printRow(const std::string& name, const Figures& f) {
     const bool soft = f.penumbraPairs != 0;
     fmt::print("{:<30.30} {:>10} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8}\n", name, f.pairs, percent(f.share(f.acne)),
                percent(f.share(f.leak)), percent(f.share(f.contactLeak)), percent(f.share(f.edgeError)),
-               soft ? fmt::format("{:.4f}", f.penumbraRmse()) : "-", soft ? fmt::format("{:.4f}", f.penumbraSsim()) : "-");
+               soft ? fmt::format("{:.4f}", f.penumbraRmse()) : "-",
+               f.ssimPixels != 0 ? fmt::format("{:.4f}", f.penumbraSsim()) : "-");
 }
 
 Json figuresOf(const Figures& f) {

@@ -57,13 +57,13 @@ struct Window {
     }
 };
 
-void addWindow(Figures& f, std::span<const PixelTruth> truth, std::span<const float> result, TruthExtent extent,
-               std::uint32_t x0, std::uint32_t y0) {
+void addWindow(Figures& f, bool subsurface, std::span<const PixelTruth> truth, std::span<const float> result,
+               TruthExtent extent, std::uint32_t x0, std::uint32_t y0) {
     Window window;
     for (std::uint32_t y = y0; y < std::min(y0 + kSubsetTilePx, extent.heightPx); ++y)
         for (std::uint32_t x = x0; x < std::min(x0 + kSubsetTilePx, extent.widthPx); ++x) {
             const std::size_t i = std::size_t{y} * extent.widthPx + x;
-            if (!truth[i].subset || truth[i].subsurface || !(truth[i].soft >= 0.0f)) continue;
+            if (!truth[i].subset || truth[i].subsurface != subsurface || !(truth[i].soft >= 0.0f)) continue;
             window.add(static_cast<double>(truth[i].soft), static_cast<double>(result[i]), inPenumbra(truth[i]));
         }
     if (window.penumbra == 0 || window.pixels < kLeastWindowPixels) return;
@@ -126,8 +126,10 @@ LightFigures figuresOf(std::span<const PixelTruth> truth, std::span<const float>
         if (truth[i].hard != HardTruth::NotCounted)
             add(truth[i].subsurface ? figures.subsurface : figures.opaque, truth[i], result[i], soft);
     for (std::uint32_t y = 0; y < extent.heightPx; y += kSubsetTilePx)
-        for (std::uint32_t x = 0; x < extent.widthPx; x += kSubsetTilePx)
-            addWindow(figures.opaque, truth, result, extent, x, y);
+        for (std::uint32_t x = 0; x < extent.widthPx; x += kSubsetTilePx) {
+            addWindow(figures.opaque, false, truth, result, extent, x, y);
+            addWindow(figures.subsurface, true, truth, result, extent, x, y);
+        }
     return figures;
 }
 

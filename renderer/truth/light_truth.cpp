@@ -19,7 +19,6 @@ constexpr double kLeastCosine = 0.1;
 constexpr double kUndecidedCosine = 1e-4;
 // A neighbour that continues a face is as flat as floats can say.
 constexpr double kFlatness = 1e-6;
-constexpr std::uint32_t kSubsetBlockTiles = 4;
 
 class Tracer {
 public:
@@ -32,6 +31,7 @@ public:
         source_.direction = glm::normalize(glm::dvec3(light.direction));
         source_.radius = static_cast<double>(light.sourceRadius);
         viewsFromTraced_ = scene.origin() - desc.viewsOrigin;
+        while (blockTiles_ * blockTiles_ < desc.subsetOf) ++blockTiles_;
     }
 
     void traceRow(std::uint32_t y, std::span<PixelTruth> row) const {
@@ -53,9 +53,9 @@ private:
 
     [[nodiscard]] bool inSubset(std::uint32_t x, std::uint32_t y) const {
         const std::uint32_t tileX = x / kSubsetTilePx, tileY = y / kSubsetTilePx;
-        const std::uint64_t block = std::uint64_t{tileY / kSubsetBlockTiles} << 32 | tileX / kSubsetBlockTiles;
-        const std::uint64_t chosen = mixedBits(mixedBits(desc_.seed) ^ block) % (kSubsetBlockTiles * kSubsetBlockTiles);
-        return chosen == tileY % kSubsetBlockTiles * kSubsetBlockTiles + tileX % kSubsetBlockTiles;
+        const std::uint64_t block = std::uint64_t{tileY / blockTiles_} << 32 | tileX / blockTiles_;
+        const std::uint64_t chosen = mixedBits(mixedBits(desc_.seed) ^ block) % (blockTiles_ * blockTiles_);
+        return chosen == tileY % blockTiles_ * blockTiles_ + tileX % blockTiles_;
     }
 
     // The point `k` of the edge set, relative to the receiver, on its plane.
@@ -126,6 +126,7 @@ private:
     const LightTruthDesc& desc_;
     std::span<const float> result_;
     LightSource source_;
+    std::uint32_t blockTiles_ = 1;  // across a block of tiles, one of which is in the subset
     glm::dvec3 viewsFromTraced_{0.0};
 };
 

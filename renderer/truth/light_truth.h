@@ -23,6 +23,7 @@ struct LightTruthDesc {
     glm::dvec3 viewsOrigin{0.0};        ///< world
     bool soft = true;                   ///< trace the source's extent too
     std::uint32_t softRaysPerSide = 16; ///< 256 rays
+    std::uint32_t subsetOf = 16;        ///< soft truth is traced for one tile in 1, 4 or 16
     std::uint64_t seed = 1;
     EdgeSet edgeSet = EdgeSet::Footprint;
 };
@@ -37,7 +38,7 @@ enum class HardTruth : std::uint8_t {
 struct PixelTruth {
     HardTruth hard = HardTruth::NotCounted;
     bool edge = false;    ///< not unanimous around
-    bool subset = false;  ///< in the seeded 1-in-16 subset
+    bool subset = false;  ///< in the seeded subset
     bool subsurface = false;
     float blockerMetres = std::numeric_limits<float>::infinity();  ///< Dark: to the nearest blocker
     float soft = std::numeric_limits<float>::quiet_NaN();          ///< visible share of the source, where traced
@@ -51,7 +52,7 @@ struct TruthExtent {
 
 /// All cores work; the answer does not depend on their number. `result`, if not empty, is the visibility that is judged:
 /// pixels where it is below 0 are not counted, and soft truth is traced, beyond the subset, wherever result and hard truth
-/// disagree. The subset is one tile of 8x8 pixels of every 4x4 tiles.
+/// disagree. The subset is one tile of 8x8 pixels of every 4x4 (2x2, 1x1) tiles.
 [[nodiscard]] std::vector<PixelTruth> traceLight(const TracedScene& scene, std::span<const TruthReceiver> receivers,
                                                  TruthExtent extent, const LightTruthDesc& desc,
                                                  std::span<const float> result);

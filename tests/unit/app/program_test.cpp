@@ -48,7 +48,7 @@ protected:
 };
 
 TEST_F(Program, HelpAndVersionAreGood) {
-    for (const char* arguments : {"--help", "--version", "render --help", "bench --help", "compare --help",
+    for (const char* arguments : {"--help", "--version", "render --help", "bench --help", "verify --help", "compare --help",
                                   "devices --help", "scenes --help"}) {
         const Outcome result = run(arguments);
         EXPECT_EQ(result.exitCode, 0) << arguments;
@@ -69,6 +69,16 @@ TEST_F(Program, WrongUsageIsRefused) {
     for (const char* arguments : {"",
                                   "nosuch",
                                   "render --bogus",
+                                  "verify --bogus",
+                                  "verify nosuch",
+                                  "verify --rays 4",
+                                  "verify --subset 3",
+                                  "verify --edge-set square",
+                                  "verify --json ''",
+                                  "verify --unquantised",
+                                  "verify boxes --light 99 --quiet --size 64x64",
+                                  "verify boxes --light -1",
+                                  "verify boxes --maps /dev/null",
                                   "render one two",
                                   "render --lights -1",
                                   "render --lights 100001",

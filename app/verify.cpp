@@ -20,11 +20,13 @@ namespace {
 
 using renderer::LightTruthDesc;
 
+constexpr float kFlickerStepMetres = 0.01f;
+
 struct VerifyOptions {
     Settings settings;
     std::string json, maps, edgeSet = "footprint";
     std::vector<std::uint32_t> lights;  // empty: all
-    std::uint32_t rays = 256, subset = 16;
+    std::uint32_t rays = 256, subset = 16, flickerFrames = 0;
 };
 
 class Verification {
@@ -37,9 +39,8 @@ public:
           camera_(posedCamera(session.scene(), pose_, session.camera())),
           traced_(session.scene(), pose_, glm::dvec3(camera_.worldFromCamera[3])),
           extent_{session.rendererDesc().widthPx, session.rendererDesc().heightPx} {
-        renderer_.renderFrame(session.camera(), renderer::ShadowMode::Deferred, options.settings.time);
-        receivers_ =
-            receiversOf(traced_, camera_, extent_.widthPx, extent_.heightPx, renderer_.readTriangleIds());
+        camera_.node = renderer::kNone;  // posed already
+        drawFrom(camera_);
     }
 
     VerifyResult run() {
@@ -58,13 +59,18 @@ public:
             said = watch.seconds();
             sayProgress(fmt::format("Light {} of {}, {:.1f} s.", i + 1, wanted.size(), said));
         }
+        if (options_.flickerFrames != 0) measureFlicker(result);
         result.seconds = watch.seconds();
         return result;
     }
 
 private:
-    void verifyLight(std::uint32_t index, VerifyResult& result) {
-        const std::vector<float> visibility = renderer_.readVisibility(index);
+    void drawFrom(const renderer::SceneCamera& camera) {
+        renderer_.renderFrame(camera, renderer::ShadowMode::Deferred, options_.settings.time);
+        receivers_ = receiversOf(traced_, camera, extent_.widthPx, extent_.heightPx, renderer_.readTriangleIds());
+    }
+
+    [[nodiscard]] LightTruthDesc truthDescOf(std::uint32_t index) const {
         LightTruthDesc desc;
         desc.light = pose_.lights[index];
         desc.views = renderer_.shadowViews(index);
@@ -74,8 +80,37 @@ private:
         desc.subsetOf = options_.subset;
         desc.seed = options_.settings.seed * 1'000'003u + index;
         desc.edgeSet = options_.edgeSet == "circle" ? renderer::EdgeSet::Circle : renderer::EdgeSet::Footprint;
-        const std::vector<renderer::PixelTruth> truth =
-            traceLight(traced_, receivers_, extent_, desc, visibility);
+        return desc;
+    }
+
+    // The camera moves sideways, the scene stands still.
+    void measureFlicker(VerifyResult& result) {
+        std::vector<renderer::FlickerMeter> meters(result.lights.size());
+        FrameProgress progress(options_.flickerFrames);
+        for (std::uint32_t frame = 0; frame < options_.flickerFrames; ++frame) {
+            renderer::SceneCamera camera = camera_;
+            const glm::vec3 right = glm::normalize(glm::vec3(camera.worldFromCamera[0]));
+            camera.worldFromCamera[3] += glm::vec4(static_cast<float>(frame) * kFlickerStepMetres * right, 0.0f);
+            drawFrom(camera);
+            for (std::size_t i = 0; i < meters.size(); ++i) {
+                LightTruthDesc desc = truthDescOf(result.lights[i].index);
+                desc.soft = false;
+                const std::vector<float> visibility = renderer_.readVisibility(result.lights[i].index);
+                meters[i].add(traceLight(traced_, receivers_, extent_, desc, visibility), visibility);
+            }
+            progress.step();
+        }
+        result.flickerFrames = options_.flickerFrames;
+        for (std::size_t i = 0; i < meters.size(); ++i) {
+            result.lights[i].flicker = meters[i].figures();
+            result.flicker += meters[i].figures();
+        }
+    }
+
+    void verifyLight(std::uint32_t index, VerifyResult& result) {
+        const std::vector<float> visibility = renderer_.readVisibility(index);
+        const LightTruthDesc desc = truthDescOf(index);
+        const std::vector<renderer::PixelTruth> truth = traceLight(traced_, receivers_, extent_, desc, visibility);
         VerifiedLight light;
         light.index = index;
         light.name = desc.light.name;
@@ -136,7 +171,8 @@ void prepareFolder(const std::string& folder) {
 
 int verify(const VerifyOptions& options) {
     rendererDescOf(options.settings);  // refuses wrong settings before anything is started
-    if (options.settings.unquantised) throw UsageError("--unquantised has no meaning here: verify reads what is stored.");
+    if (options.settings.unquantised)
+        throw UsageError("--unquantised has no meaning here: verify reads what is stored.");
     checkOutputs({&options.json, 1}, {&options.settings.scene, 1});
     prepareFolder(options.maps);
     const renderer::VulkanInstance instance(instanceDescOf(options.settings));
@@ -160,6 +196,10 @@ void addVerifyCommand(CLI::App& app, Work& chosen) {
     command->add_option("--subset", options->subset, "Soft truth is traced for one tile of pixels in so many")
         ->check(CLI::IsMember({1, 4, 16}))
         ->capture_default_str();
+    command
+        ->add_option("--flicker", options->flickerFrames,
+                     "Also so many frames of a camera that moves sideways, 1 cm each: how much shadows change")
+        ->check(CLI::Range(2u, 10'000u));
     command
         ->add_option("--edge-set", options->edgeSet,
                      "Around a pixel: as far as pixels and shadow texels fall on its face, or a circle on it")

@@ -83,6 +83,9 @@ void printVerified(const Session& session, const VerifyResult& result) {
         fmt::print("Penumbra RMSE: {:.4f} to {:.4f} with 95 % confidence, over {} pairs of the subset.\n", low, high,
                    f.penumbraPairs);
     }
+    if (result.flickerFrames != 0)
+        fmt::print("Flicker: {:.6f} in the mean over {} frames, {} pairs of neighbouring frames.\n",
+                   result.flicker.mean(), result.flickerFrames, result.flicker.pairs);
     if (result.unseen != 0) fmt::print("{} casting lights reach no pixel.\n", result.unseen);
 }
 
@@ -95,10 +98,13 @@ Json describe(const Session& session, const VerifyResult& result) {
                     {"kind", nameOf(light.kind)},
                     {"hasShadowmap", light.hasShadowmap}};
         row.update(figuresOf(light.figures.opaque));
+        if (result.flickerFrames != 0) row["flicker"] = light.flicker.mean();
         row["subsurface"] = figuresOf(light.figures.subsurface);
         lights.push_back(row);
     }
     out["total"] = figuresOf(result.total.opaque);
+    out["total"]["flicker"] = result.flickerFrames == 0 ? Json() : Json(result.flicker.mean());
+    out["flickerFrames"] = result.flickerFrames;
     out["subsurface"] = figuresOf(result.total.subsurface);
     out["lights"] = lights;
     out["castingLightsUnseen"] = result.unseen;

@@ -6,6 +6,7 @@
 
 #include "app/frame_json.h"
 #include "renderer/truth/figures.h"
+#include "renderer/truth/flicker.h"
 
 namespace gnomon::app {
 
@@ -15,11 +16,14 @@ struct VerifiedLight {
     renderer::LightKind kind = renderer::LightKind::Point;
     bool hasShadowmap = true;  // the atlas had room
     renderer::LightFigures figures;
+    renderer::FlickerFigures flicker;
 };
 
 struct VerifyResult {
     std::vector<VerifiedLight> lights;  // those that cast and reach a pixel
     renderer::LightFigures total;
+    std::uint32_t flickerFrames = 0;  // 0: not measured
+    renderer::FlickerFigures flicker;
     std::uint32_t unseen = 0;  // casting lights that reach no pixel
     double seconds = 0.0;
 };

@@ -63,7 +63,8 @@ private:
         const double angle = 2.0 * std::numbers::pi * k / kEdgePoints;
         const glm::dvec3 n = r.normal;
         glm::dvec3 slope = toLight - glm::dot(toLight, n) * n;
-        if (!(glm::length(slope) > 1e-6)) slope = glm::cross(n, std::abs(n.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0));
+        if (!(glm::length(slope) > 1e-6))
+            slope = glm::cross(n, std::abs(n.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0));
         slope = glm::normalize(slope);
         const glm::dvec3 level = glm::cross(n, slope);
         const double pixels = kEdgePixels * r.pixelMetres, texels = kEdgeTexels * texel;
@@ -80,8 +81,8 @@ private:
         const double cosine = glm::dot(r.normal, toLight);
         if (std::abs(cosine) < kUndecidedCosine) return true;
         if (!r.subsurface && cosine < 0.0) return false;
-        const double texel =
-            shadowTexelMetres(desc_.views, source_.kind, source_.position + viewsFromTraced_, r.position + viewsFromTraced_);
+        const double texel = shadowTexelMetres(desc_.views, source_.kind, source_.position + viewsFromTraced_,
+                                               r.position + viewsFromTraced_);
         const glm::dvec3 world = glm::abs(r.position + scene_.origin());
         const double flatness =
             kFlatness * (1.0 + std::max({world.x, world.y, world.z})) / std::max(std::abs(cosine), 1e-2);
@@ -93,7 +94,8 @@ private:
         return false;
     }
 
-    [[nodiscard]] PixelTruth traced(const TruthReceiver& r, const float* result, std::uint32_t x, std::uint32_t y) const {
+    [[nodiscard]] PixelTruth traced(const TruthReceiver& r, const float* result, std::uint32_t x,
+                                    std::uint32_t y) const {
         PixelTruth truth;
         if (r.triangle == kNone || !reaches(r.position) || (result != nullptr && *result < 0.0f)) return truth;
         const glm::dvec3 toLight = directionTo(source_, r.position);

@@ -18,12 +18,12 @@ enum class EdgeSet : std::uint8_t {
 };
 
 struct LightTruthDesc {
-    SceneLight light;                   ///< posed, with its range
-    std::vector<ShadowView> views;      ///< of the result; for the size of their texels
-    glm::dvec3 viewsOrigin{0.0};        ///< world
-    bool soft = true;                   ///< trace the source's extent too
-    std::uint32_t softRaysPerSide = 16; ///< 256 rays
-    std::uint32_t subsetOf = 16;        ///< soft truth is traced for one tile in 1, 4 or 16
+    SceneLight light;                    ///< posed, with its range
+    std::vector<ShadowView> views;       ///< of the result; for the size of their texels
+    glm::dvec3 viewsOrigin{0.0};         ///< world
+    bool soft = true;                    ///< trace the source's extent too
+    std::uint32_t softRaysPerSide = 16;  ///< 256 rays
+    std::uint32_t subsetOf = 16;         ///< soft truth is traced for one tile in 1, 4 or 16
     std::uint64_t seed = 1;
     EdgeSet edgeSet = EdgeSet::Footprint;
 };
@@ -50,9 +50,9 @@ struct TruthExtent {
     std::uint32_t widthPx = 0, heightPx = 0;
 };
 
-/// All cores work; the answer does not depend on their number. `result`, if not empty, is the visibility that is judged:
-/// pixels where it is below 0 are not counted, and soft truth is traced, beyond the subset, wherever result and hard truth
-/// disagree. The subset is one tile of 8x8 pixels of every 4x4 (2x2, 1x1) tiles.
+/// All cores work; the answer does not depend on their number. `result`, if not empty, is the visibility that is
+/// judged: pixels where it is below 0 are not counted, and soft truth is traced, beyond the subset, wherever result and
+/// hard truth disagree. The subset is one tile of 8x8 pixels of every 4x4 (2x2, 1x1) tiles.
 [[nodiscard]] std::vector<PixelTruth> traceLight(const TracedScene& scene, std::span<const TruthReceiver> receivers,
                                                  TruthExtent extent, const LightTruthDesc& desc,
                                                  std::span<const float> result);

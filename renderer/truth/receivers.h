@@ -10,9 +10,9 @@
 namespace gnomon::renderer {
 
 struct TruthReceiver {
-    glm::dvec3 position{0.0};  ///< relative to the traced scene's origin
-    glm::dvec3 normal{0.0};    ///< of the face, unit, on the side that the camera sees
-    glm::dvec3 toEye{0.0};     ///< unit
+    glm::dvec3 position{0.0};        ///< relative to the traced scene's origin
+    glm::dvec3 normal{0.0};          ///< of the face, unit, on the side that the camera sees
+    glm::dvec3 toEye{0.0};           ///< unit
     std::uint32_t triangle = kNone;  ///< kNone: background, or a triangle without area
     double pixelMetres = 0.0;        ///< width of a pixel at this depth
     bool subsurface = false;

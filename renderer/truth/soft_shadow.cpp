@@ -8,8 +8,8 @@
 namespace gnomon::renderer {
 namespace {
 
-// From the unit square to the unit disk, keeping areas. Source: Shirley and Chiu 1997, "A Low Distortion Map Between Disk
-// and Square".
+// From the unit square to the unit disk, keeping areas. Source: Shirley and Chiu 1997, "A Low Distortion Map Between
+// Disk and Square".
 glm::dvec2 diskOf(double u, double v) {
     const double a = 2.0 * u - 1.0, b = 2.0 * v - 1.0;
     if (a == 0.0 && b == 0.0) return glm::dvec2(0.0);
@@ -36,12 +36,10 @@ double softVisibility(const TracedScene& scene, const TruthReceiver& receiver, c
                       std::uint32_t raysPerSide, std::uint64_t seed) {
     const double reach = scene.reachMetres() + 1.0;
     const glm::dvec3 centre = endOfRay(source, receiver.position, reach);
-    const glm::dvec3 axis =
-        source.kind == LightKind::Spot ? source.direction : directionTo(source, receiver.position);
+    const glm::dvec3 axis = source.kind == LightKind::Spot ? source.direction : directionTo(source, receiver.position);
     const glm::dvec3 helper = std::abs(axis.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
     const glm::dvec3 right = glm::normalize(glm::cross(axis, helper)), up = glm::cross(axis, right);
-    const double radius =
-        source.kind == LightKind::Directional ? reach * std::tan(source.radius) : source.radius;
+    const double radius = source.kind == LightKind::Directional ? reach * std::tan(source.radius) : source.radius;
     std::uint32_t free = 0;
     for (std::uint32_t i = 0; i < raysPerSide * raysPerSide; ++i) {
         const double u = (i % raysPerSide + unitOf(mixedBits(seed + 2ull * i))) / raysPerSide;

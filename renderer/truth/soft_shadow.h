@@ -5,8 +5,8 @@
 
 namespace gnomon::renderer {
 
-/// The source as rays meet it. A point light's sphere is the disk that faces the receiver; a spot's is a disk across its
-/// axis; a directional light is a cone of its angular radius.
+/// The source as rays meet it. A point light's sphere is the disk that faces the receiver; a spot's is a disk across
+/// its axis; a directional light is a cone of its angular radius.
 struct LightSource {
     LightKind kind = LightKind::Point;
     glm::dvec3 position{0.0};  ///< relative to the traced scene's origin
@@ -19,8 +19,8 @@ struct LightSource {
 /// End of a ray to the light's centre.
 [[nodiscard]] glm::dvec3 endOfRay(const LightSource& source, const glm::dvec3& position, double reachMetres);
 
-/// Share of the source's disk that `raysPerSide` squared stratified rays find free. What is below the receiver's face is
-/// dark, unless the receiver is subsurface. The same `seed` gives the same rays.
+/// Share of the source's disk that `raysPerSide` squared stratified rays find free. What is below the receiver's face
+/// is dark, unless the receiver is subsurface. The same `seed` gives the same rays.
 [[nodiscard]] double softVisibility(const TracedScene& scene, const TruthReceiver& receiver, const LightSource& source,
                                     std::uint32_t raysPerSide, std::uint64_t seed);
 

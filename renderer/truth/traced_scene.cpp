@@ -15,11 +15,11 @@
 namespace gnomon::renderer {
 namespace {
 
-// What float rounding does to a hit, as a share of the coordinates: a few steps of 2^-24 each for the corners, the ray's
-// start, its direction and the intersection.
+// What float rounding does to a hit, as a share of the coordinates: a few steps of 2^-24 each for the corners, the
+// ray's start, its direction and the intersection.
 constexpr double kFloatError = 1e-6;
-// Nearer to the start than so many float errors, a triangle is exactly as large as it is: there an edge that is too long
-// would stand above the point's own surface.
+// Nearer to the start than so many float errors, a triangle is exactly as large as it is: there an edge that is too
+// long would stand above the point's own surface.
 constexpr double kStrictNear = 1e3;
 
 double largest(const glm::dvec3& v) {
@@ -58,7 +58,8 @@ double texel(const Image& image, const TextureUse& use, long x, long y) {
         return repeats ? (i % size + size) % size : std::clamp(i, 0l, size - 1);
     };
     const long column = wrapped(x, image.width, use.repeatU), row = wrapped(y, image.height, use.repeatV);
-    return image.rgba8[4 * (static_cast<std::size_t>(row) * image.width + static_cast<std::size_t>(column)) + 3] / 255.0;
+    return image.rgba8[4 * (static_cast<std::size_t>(row) * image.width + static_cast<std::size_t>(column)) + 3] /
+           255.0;
 }
 
 // As a sampler reads the finest mip.
@@ -211,10 +212,10 @@ void TracedScene::build() {
     rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     const std::size_t count = std::max<std::size_t>(triangles_.size(), 1);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 3 * sizeof(float), 3 * count));
-    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
-                                                                        RTC_FORMAT_UINT3, 3 * sizeof(float), count));
+    auto* vertices = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * count));
+    auto* indices = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(float), count));
     if (vertices == nullptr || indices == nullptr) {
         rtcReleaseGeometry(geometry);
         throwEmbreeError(embree_->device, "hold the scene's triangles");

@@ -3,12 +3,12 @@
 //
 // Problem: Embree computes in float, and a float has no idea on which side of its own surface a point lies: a ray that
 // starts there meets that surface, or the coplanar neighbour, a few micrometres ahead.
-// Plain way: an offset along the normal or the ray, which is a depth bias again, in the very thing that shall judge biases.
-// Here: Embree only proposes. Its rays start a little before the point; every triangle that it offers is met again in
-// double, from the point itself, and must lie farther from it than double arithmetic errs. The triangle that the point
-// lies on is left out by its number.
-// Limits: a triangle is taken to be a few float steps larger where the ray passes its edge far from its start, so that
-// no light falls through seams that Embree saw a step beside the true ones. Alpha masks are read at the finest mip.
+// Plain way: an offset along the normal or the ray, which is a depth bias again, in the very thing that shall judge
+// biases. Here: Embree only proposes. Its rays start a little before the point; every triangle that it offers is met
+// again in double, from the point itself, and must lie farther from it than double arithmetic errs. The triangle that
+// the point lies on is left out by its number. Limits: a triangle is taken to be a few float steps larger where the ray
+// passes its edge far from its start, so that no light falls through seams that Embree saw a step beside the true ones.
+// Alpha masks are read at the finest mip.
 
 #include <array>
 #include <cstdint>
@@ -62,8 +62,7 @@ private:
         std::array<glm::dvec2, 3> uv{};
         std::array<double, 3> alpha{1.0, 1.0, 1.0};
     };
-    void append(const Primitive& primitive, const std::vector<glm::vec3>& positions,
-                const glm::dmat4& worldFromObject);
+    void append(const Primitive& primitive, const std::vector<glm::vec3>& positions, const glm::dmat4& worldFromObject);
     void build();
     [[nodiscard]] bool isCutOut(const Triangle& triangle, const glm::dvec3& barycentrics) const;
 

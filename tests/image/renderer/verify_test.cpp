@@ -63,9 +63,10 @@ TEST_P(Verify, AcneAndLeakStayWithinTheirLimits) {
         RendererDesc desc = smallDesc(160, 90);
         desc.filter = filter;
         const Figures f = verified(device(), builtin(scene), desc).figures;
-        std::printf("[ figure   ] %s: %s %s: of %llu pairs acne %.4f %%, leak %.4f %%, contact leak %.4f %%; rmse %.4f\n",
-                    device().info().name.c_str(), scene, name, static_cast<unsigned long long>(f.pairs),
-                    100.0 * f.share(f.acne), 100.0 * f.share(f.leak), 100.0 * f.share(f.contactLeak), f.penumbraRmse());
+        std::printf(
+            "[ figure   ] %s: %s %s: of %llu pairs acne %.4f %%, leak %.4f %%, contact leak %.4f %%; rmse %.4f\n",
+            device().info().name.c_str(), scene, name, static_cast<unsigned long long>(f.pairs),
+            100.0 * f.share(f.acne), 100.0 * f.share(f.leak), 100.0 * f.share(f.contactLeak), f.penumbraRmse());
         EXPECT_GT(f.pairs, 5000u);
         EXPECT_GT(f.dark, 100u);
         EXPECT_LE(f.share(f.acne + f.leak), kMostAcneAndLeak);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "renderer/truth/flicker.h"
 #include "unit/truth/truth_scenes.h"
 
 namespace gnomon::renderer::truth_test {
@@ -16,7 +17,8 @@ double beyond(double s) {
     return (std::acos(s) - s * std::sqrt(1.0 - s * s)) / std::numbers::pi;
 }
 
-// A light at (0, 4, 0); an edge at the height of 1 m over x = `edge`, seen from x on the floor, falls on the light's plane.
+// A light at (0, 4, 0); an edge at the height of 1 m over x = `edge`, seen from x on the floor, falls on the light's
+// plane.
 double onLightsPlane(double x, double edge) {
     return x + 4.0 * (edge - x);
 }
@@ -218,6 +220,25 @@ TEST_F(PlantedErrors, SubsetIsOneInSixteenAndRepeats) {
         ASSERT_TRUE(once[i].soft == again[i].soft || (std::isnan(once[i].soft) && std::isnan(again[i].soft)));
     }
     EXPECT_NEAR(static_cast<double>(chosen) / static_cast<double>(counted), 1.0 / 16.0, 0.03);
+}
+
+TEST(Flicker, CountsChangeWhereNothingChanges) {
+    std::vector<PixelTruth> truth(4);
+    truth[0].hard = truth[1].hard = truth[2].hard = HardTruth::Lit;
+    truth[1].edge = true;
+    FlickerMeter meter;
+    meter.add(truth, std::vector<float>{1.0f, 1.0f, 1.0f, -1.0f});
+    EXPECT_EQ(meter.figures().pairs, 0u);
+    meter.add(truth, std::vector<float>{0.5f, 0.0f, 1.0f, -1.0f});
+    EXPECT_EQ(meter.figures().pairs, 2u) << "no edge, no background";
+    EXPECT_NEAR(meter.figures().mean(), 0.25, 1e-4);
+    truth[0].hard = HardTruth::Dark;
+    meter.add(truth, std::vector<float>{0.0f, 0.0f, 1.0f, -1.0f});
+    EXPECT_EQ(meter.figures().pairs, 3u) << "the truth itself changed";
+    truth[0].hard = HardTruth::Away;
+    meter.add(truth, std::vector<float>{0.0f, 0.0f, 1.0f, -1.0f});
+    EXPECT_EQ(meter.figures().pairs, 5u);
+    EXPECT_NEAR(meter.figures().mean(), 0.1, 1e-4);
 }
 
 }  // namespace

@@ -65,13 +65,13 @@ TEST(TracedScene, CoplanarNeighboursCastNoShadow) {
         const auto& c = traced.triangles()[i].corners;
         for (std::size_t k = 0; k < 3; ++k)
             for (const double inset : {1e-6, 1e-3}) {
-                const glm::dvec3 p =
-                    glm::mix(glm::mix(c[k], c[(k + 1) % 3], 0.37), (c[0] + c[1] + c[2]) / 3.0, inset);
+                const glm::dvec3 p = glm::mix(glm::mix(c[k], c[(k + 1) % 3], 0.37), (c[0] + c[1] + c[2]) / 3.0, inset);
                 for (int a = 0; a < 8; ++a)
                     for (const double elevation : {0.035, 0.2, 1.5}) {
                         const double angle = std::numbers::pi * a / 4.0;
-                        const glm::dvec3 way = std::cos(elevation) * (std::cos(angle) * side + std::sin(angle) * other) +
-                                               std::sin(elevation) * up;
+                        const glm::dvec3 way =
+                            std::cos(elevation) * (std::cos(angle) * side + std::sin(angle) * other) +
+                            std::sin(elevation) * up;
                         ASSERT_FALSE(traced.blocked({p, p + 50.0 * way, i})) << i << " " << k << " " << elevation;
                         ++rays;
                     }

@@ -52,6 +52,8 @@ Colour errorColour(const PixelTruth& truth, float result, bool soft) {
         case PairError::None:
             break;
     }
+    if (renderer::isFaintAcne(truth, result, soft)) return {255, 140, 120};
+    if (renderer::isFaintLeak(truth, result, soft)) return {130, 200, 255};
     if (soft && truth.subset && truth.soft > 0.0f && truth.soft < 1.0f) {
         const auto off = static_cast<std::uint8_t>(std::lround(255.0f * std::min(std::abs(result - truth.soft), 1.0f)));
         return {30, static_cast<std::uint8_t>(std::max<int>(off, 60)), 30};

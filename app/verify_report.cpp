@@ -40,6 +40,8 @@ Json figuresOf(const Figures& f) {
             {"contactLeak", f.share(f.contactLeak)},
             {"contactLeakOfContacts", f.contactLeakOfContacts()},
             {"edgeError", f.share(f.edgeError)},
+            {"faintAcne", f.share(f.faintAcne)},
+            {"faintLeak", f.share(f.faintLeak)},
             {"penumbraRmse", count == 0.0 ? Json() : Json(f.penumbraRmse())},
             {"penumbraRmse95", count == 0.0 ? Json() : Json({low, high})},
             {"penumbraSsim", f.ssimPixels == 0 ? Json() : Json(f.penumbraSsim())},
@@ -54,6 +56,8 @@ Json figuresOf(const Figures& f) {
               {"leak", f.leak},
               {"contactLeak", f.contactLeak},
               {"edgeError", f.edgeError},
+              {"faintAcne", f.faintAcne},
+              {"faintLeak", f.faintLeak},
               {"softTruth", f.softPairs},
               {"penumbra", f.penumbraPairs}}}};
 }
@@ -75,6 +79,8 @@ void printVerified(const Session& session, const VerifyResult& result) {
     const Figures& f = result.total.opaque;
     fmt::print("\nAcne and leak together: {} % of {} pairs ({} lit, {} dark, {} facing away; {} at edges).\n",
                percent(f.share(f.acne + f.leak)), f.pairs, f.lit, f.dark, f.away, f.edges);
+    fmt::print("Faint acne (truth lit, result 0.5 to 0.9): {} %; faint leak (truth dark, result 0.1 to 0.5): {} %.\n",
+               percent(f.share(f.faintAcne)), percent(f.share(f.faintLeak)));
     fmt::print("Contact leak: {} % of the {} pairs that a blocker touches.\n", percent(f.contactLeakOfContacts()),
                f.contacts);
     if (f.penumbraPairs != 0) {

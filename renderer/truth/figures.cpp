@@ -7,6 +7,14 @@ namespace gnomon::renderer {
 namespace {
 
 constexpr float kSoftLit = 0.99f, kSoftDark = 0.01f;
+
+bool isLit(const PixelTruth& truth, bool soft) {
+    return soft ? truth.soft > kSoftLit : truth.hard == HardTruth::Lit;
+}
+bool isDark(const PixelTruth& truth, bool soft) {
+    return soft ? truth.soft < kSoftDark : truth.hard != HardTruth::Lit;
+}
+
 // Smaller windows say nothing about structure.
 constexpr std::uint64_t kLeastWindowPixels = 16;
 
@@ -27,6 +35,8 @@ void add(Figures& f, const PixelTruth& truth, float result, bool soft) {
     f.leak += error == PairError::Leak || (error == PairError::ContactLeak && !truth.edge);
     f.contactLeak += error == PairError::ContactLeak;
     f.edgeError += error == PairError::EdgeError || (error == PairError::ContactLeak && truth.edge);
+    f.faintAcne += isFaintAcne(truth, result, soft);
+    f.faintLeak += isFaintLeak(truth, result, soft);
     if (!truth.subset || !(truth.soft >= 0.0f)) return;
     ++f.softPairs;
     if (!inPenumbra(truth)) return;
@@ -76,18 +86,27 @@ void addWindow(Figures& f, bool subsurface, std::span<const PixelTruth> truth, s
 PairError errorOf(const PixelTruth& truth, float result, bool soft) {
     if (truth.hard == HardTruth::NotCounted) return PairError::NotCounted;
     // Where no soft truth was traced, hard truth and result agree.
-    const bool lit = soft ? truth.soft > kSoftLit : truth.hard == HardTruth::Lit;
-    const bool dark = soft ? truth.soft < kSoftDark : truth.hard != HardTruth::Lit;
-    if (lit && result < 0.5f) return truth.edge ? PairError::EdgeError : PairError::Acne;
-    if (dark && result > 0.5f) {
+    if (isLit(truth, soft) && result < 0.5f) return truth.edge ? PairError::EdgeError : PairError::Acne;
+    if (isDark(truth, soft) && result > 0.5f) {
         if (truth.blockerMetres < kContactMetres) return PairError::ContactLeak;
         return truth.edge ? PairError::EdgeError : PairError::Leak;
     }
     return PairError::None;
 }
 
+bool isFaintAcne(const PixelTruth& truth, float result, bool soft) {
+    return truth.hard != HardTruth::NotCounted && !truth.edge && isLit(truth, soft) && result >= 0.5f &&
+           result < 1.0f - kFaint;
+}
+
+bool isFaintLeak(const PixelTruth& truth, float result, bool soft) {
+    return truth.hard != HardTruth::NotCounted && !truth.edge && isDark(truth, soft) && result <= 0.5f &&
+           result > kFaint;
+}
+
 Figures& Figures::operator+=(const Figures& o) {
     pairs += o.pairs, away += o.away, lit += o.lit, dark += o.dark, edges += o.edges, contacts += o.contacts;
+    faintAcne += o.faintAcne, faintLeak += o.faintLeak;
     acne += o.acne, leak += o.leak, contactLeak += o.contactLeak, edgeError += o.edgeError;
     softPairs += o.softPairs, penumbraPairs += o.penumbraPairs;
     squaredError += o.squaredError, fourthPowers += o.fourthPowers;

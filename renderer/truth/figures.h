@@ -17,11 +17,16 @@ inline constexpr float kContactMetres = 0.05f;
 /// `soft`: judged against soft truth (PCSS), else against hard truth.
 [[nodiscard]] PairError errorOf(const PixelTruth& truth, float result, bool soft);
 
+/// No edge, and off by more than kFaint, but not so far that errorOf() calls it acne or a leak.
+[[nodiscard]] bool isFaintAcne(const PixelTruth& truth, float result, bool soft);
+[[nodiscard]] bool isFaintLeak(const PixelTruth& truth, float result, bool soft);
+
 /// Sums over pairs of pixel and light; shares of them.
 struct Figures {
     std::uint64_t pairs = 0;  ///< counted
     std::uint64_t away = 0, lit = 0, dark = 0, edges = 0, contacts = 0;
     std::uint64_t acne = 0, leak = 0, contactLeak = 0, edgeError = 0;
+    std::uint64_t faintAcne = 0, faintLeak = 0;      ///< off by more than 0.1, but not by so much as acne and leak
     std::uint64_t softPairs = 0, penumbraPairs = 0;  ///< with soft truth, of the subset; of them in penumbra
     double squaredError = 0.0, fourthPowers = 0.0;   ///< of result - soft truth, over the penumbra
     double ssimSum = 0.0;                            ///< weighted by pixels in penumbra

@@ -112,7 +112,8 @@ private:
         const bool dark = truth.hard != HardTruth::Lit;
         truth.edge = isEdge(r, toLight, dark);
         if (!desc_.soft) return truth;
-        const bool disagrees = result != nullptr && (dark ? *result > 0.5f : *result < 0.5f);
+        const float most = truth.edge ? 0.5f : kFaint;
+        const bool disagrees = result != nullptr && (dark ? *result > most : *result < 1.0f - most);
         if (truth.hard == HardTruth::Away) {
             truth.soft = 0.0f;
         } else if (truth.subset || disagrees) {

@@ -45,6 +45,8 @@ struct PixelTruth {
 };
 
 inline constexpr std::uint32_t kSubsetTilePx = 8;
+/// A result that is off by more is looked at.
+inline constexpr float kFaint = 0.1f;
 
 struct TruthExtent {
     std::uint32_t widthPx = 0, heightPx = 0;
@@ -52,7 +54,8 @@ struct TruthExtent {
 
 /// All cores work; the answer does not depend on their number. `result`, if not empty, is the visibility that is
 /// judged: pixels where it is below 0 are not counted, and soft truth is traced, beyond the subset, wherever result and
-/// hard truth disagree. The subset is one tile of 8x8 pixels of every 4x4 (2x2, 1x1) tiles.
+/// hard truth disagree (by more than one half, at pixels that are no edge by kFaint). The subset is one tile of 8x8
+/// pixels of every 4x4 (2x2, 1x1) tiles.
 [[nodiscard]] std::vector<PixelTruth> traceLight(const TracedScene& scene, std::span<const TruthReceiver> receivers,
                                                  TruthExtent extent, const LightTruthDesc& desc,
                                                  std::span<const float> result);

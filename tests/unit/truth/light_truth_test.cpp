@@ -167,6 +167,21 @@ TEST_F(PlantedErrors, LostShadowsLeak) {
     EXPECT_EQ(f.acne, 0u);
 }
 
+TEST_F(PlantedErrors, FaintErrorsStandApart) {
+    for (const bool soft : {false, true}) {
+        desc.soft = soft;
+        desc.light.sourceRadius = 0.01f;
+        std::vector<float> result = biased(0.0);
+        for (float& v : result) v = v < 0.0f ? v : 0.2f + 0.6f * v;
+        const Figures f = judged(result);
+        EXPECT_EQ(f.acne + f.leak + f.contactLeak + f.edgeError, 0u);
+        EXPECT_GT(f.faintAcne, 4000u);
+        EXPECT_GT(f.faintLeak, 400u);
+        EXPECT_LE(f.faintAcne + f.faintLeak + f.edges, f.pairs);
+        EXPECT_EQ(judged(biased(0.0)).faintAcne + judged(biased(0.0)).faintLeak, 0u);
+    }
+}
+
 TEST_F(PlantedErrors, PixelsNotReachedDoNotCount) {
     desc.light.rangeMetres = 0.1f;
     EXPECT_EQ(judged(biased(0.0)).pairs, 0u);

@@ -186,6 +186,37 @@ TEST_F(Program, NothingFartherThanFloatsReach) {
     expectRefused("render boxes --size 16x16 --unquantised", 2);
 }
 
+TEST_F(Program, VerifiesAFrame) {
+    const std::string verify = "verify boxes --size 96x54 --filter pcss --quiet --flicker 2 --json ";
+    expectGood(verify + "a.json --maps maps");
+    expectGood(verify + "b.json");
+    const nlohmann::json a = readJson("a.json"), b = readJson("b.json");
+    for (const char* key : {"acne", "leak", "contactLeak", "edgeError", "penumbraRmse", "penumbraSsim", "flicker"}) {
+        ASSERT_TRUE(a["total"][key].is_number()) << key;
+        EXPECT_GE(a["total"][key], 0.0) << key;
+        EXPECT_LE(a["total"][key], 1.0) << key;
+    }
+    EXPECT_LE(a["total"]["acne"].get<double>() + a["total"]["leak"].get<double>(), 0.001);
+    EXPECT_GT(a["total"]["counts"]["pairs"], 10'000);
+    EXPECT_EQ(a["total"], b["total"]);
+    EXPECT_EQ(a["lights"], b["lights"]);
+    ASSERT_EQ(a["lights"].size(), 3u);
+    std::uint64_t pairs = 0;
+    for (const nlohmann::json& light : a["lights"]) pairs += light["counts"]["pairs"].get<std::uint64_t>();
+    EXPECT_EQ(a["total"]["counts"]["pairs"], pairs);
+    const renderer::Picture map = renderer::readPng(folder_ / "maps" / "light_000_point.png");
+    EXPECT_EQ(map.width, 3u * 96u);
+    EXPECT_EQ(map.height, 54u);
+}
+
+TEST_F(Program, VerifiesWhatIsNotThere) {
+    expectGood("verify lights-only --filter hard --size 64x36 --quiet --json none.json");
+    EXPECT_EQ(readJson("none.json")["total"]["counts"]["pairs"], 0);
+    EXPECT_EQ(readJson("none.json")["castingLightsUnseen"], 3);
+    expectGood("verify boxes --filter hard --size 64x36 --quiet --light 1 --json one.json");
+    EXPECT_EQ(readJson("one.json")["lights"].size(), 1u);
+}
+
 TEST_F(Program, RendersAndDescribesAFrame) {
     expectGood("render boxes --size 160x90 -o out.png --exr out.exr --stats out.json --frames 2");
     const renderer::Picture picture = renderer::readPng(folder_ / "out.png");

@@ -105,6 +105,47 @@ TEST(TracedScene, SeamsAreTight) {
     EXPECT_GT(rays, 80'000);
 }
 
+// Out there floats have steps of 8 micrometres, and turned as it is nothing falls on them.
+glm::dmat4 farAndTurned(int i) {
+    return glm::rotate(glm::translate(glm::dmat4(1.0), {100.3 + 1e-6 * i, -51.7, 83.1}), 0.7 + 0.01 * i,
+                       glm::dvec3(0.3, 0.8, -0.5));
+}
+
+// A blocker within a float step of the point: Embree may see them change places.
+TEST(TracedScene, BlockersWithinAFloatStepBlock) {
+    SceneBuilder b;
+    b.quad({-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, 2);
+    for (int i = 0; i < 300; ++i) {
+        Pose pose = restPose(b.scene);
+        pose.worldFromObject[0] = farAndTurned(i);
+        const TracedScene traced(b.scene, pose, glm::dvec3(0.0));
+        const auto at = [&](double x, double y, double z) {
+            return glm::dvec3(pose.worldFromObject[0] * glm::dvec4(x, y, z, 1.0));
+        };
+        EXPECT_NEAR(traced.nearestBlocker({at(0.1, -2e-6, 0.3), at(0.1, 9.0, 0.4)}), 2e-6, 1e-8) << i;
+        EXPECT_FALSE(traced.blocked({at(0.1, 2e-6, 0.3), at(0.1, 9.0, 0.4)})) << i;
+    }
+}
+
+// The side of a box does not reach above its top, not even by a float step, where a point lies beside the edge.
+TEST(TracedScene, EdgesOfConvexBodiesCastNoShadowOnThem) {
+    SceneBuilder b;
+    b.quad({-1, 0, -1}, {-1, 0, 1}, {0, 0, 1}, {0, 0, -1}, 8);
+    b.quad({0, 0, -1}, {0, 0, 1}, {0, -1, 1}, {0, -1, -1}, 8);
+    for (int i = 0; i < 300; ++i) {
+        Pose pose = restPose(b.scene);
+        pose.worldFromObject.assign(2, farAndTurned(i));
+        const TracedScene traced(b.scene, pose, glm::dvec3(0.0));
+        const auto at = [&](double x, double y, double z) {
+            return glm::dvec3(pose.worldFromObject[0] * glm::dvec4(x, y, z, 1.0));
+        };
+        for (int k = 0; k < 20; ++k) {
+            const double z = -0.5 + 0.04 * k;
+            EXPECT_FALSE(traced.blocked({at(-1e-6, 1e-9, z), at(5.0, 0.5, z + 0.1)})) << i << " " << k;
+        }
+    }
+}
+
 class MaskedQuad : public testing::Test {
 protected:
     SceneBuilder b;

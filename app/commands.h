@@ -11,6 +11,7 @@ using Work = std::function<int()>;
 
 void addRenderCommand(CLI::App& app, Work& chosen);
 void addBenchCommand(CLI::App& app, Work& chosen);
+void addVerifyCommand(CLI::App& app, Work& chosen);
 void addCompareCommand(CLI::App& app, Work& chosen);
 void addDevicesCommand(CLI::App& app, Work& chosen);
 void addScenesCommand(CLI::App& app, Work& chosen);

@@ -1,4 +1,4 @@
-// gnomon: renders pictures with tiled deferred shadows, measures them, and compares pictures.
+// gnomon: renders pictures with tiled deferred shadows, measures and verifies them, and compares pictures.
 
 #include <fmt/format.h>
 
@@ -26,13 +26,14 @@ void complain(std::string sentence) {
 }
 
 int parseAndWork(int argc, char** argv) {
-    CLI::App app("Tiled deferred shadows: renders, measures and compares pictures.", "gnomon");
+    CLI::App app("Tiled deferred shadows: renders, measures and verifies them, compares pictures.", "gnomon");
     app.set_version_flag("--version", fmt::format("gnomon {} ({})", version(), commit()));
     app.require_subcommand(1);
     app.footer("Exit codes: 0 good, 1 the work failed, 2 wrong usage or input.");
     Work work;
     addRenderCommand(app, work);
     addBenchCommand(app, work);
+    addVerifyCommand(app, work);
     addCompareCommand(app, work);
     addDevicesCommand(app, work);
     addScenesCommand(app, work);

@@ -14,5 +14,7 @@ find_package(CLI11 2.1 REQUIRED)                       # libcli11-dev 2.1
 find_package(fmt 9.1 REQUIRED)                         # libfmt-dev 9.1
 find_package(spdlog 1.10 REQUIRED)                     # libspdlog-dev 1.10
 find_path(XXHASH_DIR xxhash.h REQUIRED)                # libxxhash-dev 0.8
+find_path(EMBREE_DIR NAMES embree3/rtcore.h embree4/rtcore.h REQUIRED)  # libembree-dev 3.13 or 4
+find_library(EMBREE_LIBRARY NAMES embree3 embree4 REQUIRED)
 find_package(GTest 1.12 REQUIRED)                      # libgtest-dev 1.12
 find_package(benchmark 1.7 REQUIRED)                   # libbenchmark-dev 1.7

@@ -14,6 +14,7 @@
 #include "renderer/gpu/error.h"
 #include "renderer/gpu/gpu_scene.h"
 #include "renderer/gpu/timer.h"
+#include "renderer/lighting/light_visibility.h"
 #include "renderer/lighting/lighting.h"
 #include "renderer/scene/pose.h"
 #include "renderer/shadow_atlas/plan.h"
@@ -155,6 +156,9 @@ struct Renderer::State {
     Commands commands[kFramesInFlight];
     std::unique_ptr<Prepare> selection;  // where more lights are given than a view can have
     std::vector<std::byte> selectionMemory;
+    std::unique_ptr<LightVisibility> lightVisibility;  // from the first time that it is asked for
+    ShadowPlan lastPlan;
+    glm::dvec3 lastOrigin{0.0};
     std::uint64_t frameNumber = 0;
     struct Known {
         std::uint64_t frameNumber = ~0ull;
@@ -341,6 +345,8 @@ std::uint64_t Renderer::renderFrame(const SceneCamera& cameraAtRest, ShadowMode 
     known.report.atlasSizePx = s.planner.settings().atlasSizePx;
     s.recordPasses(c, gbufferCamera, mode, known.report);
     commands.submit();
+    s.lastPlan = std::move(plan);
+    s.lastOrigin = origin;
     ++s.frameNumber;
     return number;
 }
@@ -405,6 +411,25 @@ std::vector<std::uint32_t> Renderer::readTriangleIds() {
     std::memcpy(ids.data(), bytes.data(), ids.size() * 4);
     for (std::uint32_t& id : ids) id = state_->scene.trianglePosition(id);
     return ids;
+}
+
+std::vector<float> Renderer::readVisibility(std::uint32_t light) {
+    State& s = *state_;
+    wait();
+    if (s.lightVisibility == nullptr)
+        s.lightVisibility = std::make_unique<LightVisibility>(s.device, *s.context, s.desc.widthPx, s.desc.heightPx);
+    return s.lightVisibility->read(*s.view, light);
+}
+
+std::vector<ShadowView> Renderer::shadowViews(std::uint32_t light) const {
+    std::vector<ShadowView> views;
+    for (const PlannedView& planned : state_->lastPlan.views)
+        if (planned.light == light) views.push_back(planned.view);
+    return views;
+}
+
+glm::dvec3 Renderer::frameOrigin() const {
+    return state_->lastOrigin;
 }
 
 std::vector<MemoryUseRow> Renderer::memory() const {

@@ -11,6 +11,7 @@ needed=(
     mesa-vulkan-drivers vulkan-validationlayers               # a software device, validation
     libglm-dev libtinygltf-dev libdraco-dev nlohmann-json3-dev # scenes
     libstb-dev libtinyexr-dev libxxhash-dev                   # pictures
+    libembree-dev                                             # ray-traced truth
     libcli11-dev libfmt-dev libspdlog-dev                     # the program
     libgtest-dev libgmock-dev libbenchmark-dev                # tests, benchmarks
     libspirv-cross-c-shared-dev                               # tests of the shaders' interfaces

@@ -48,7 +48,7 @@ protected:
 };
 
 TEST_F(Program, HelpAndVersionAreGood) {
-    for (const char* arguments : {"--help", "--version", "render --help", "bench --help", "compare --help",
+    for (const char* arguments : {"--help", "--version", "render --help", "bench --help", "verify --help", "compare --help",
                                   "devices --help", "scenes --help"}) {
         const Outcome result = run(arguments);
         EXPECT_EQ(result.exitCode, 0) << arguments;
@@ -69,6 +69,16 @@ TEST_F(Program, WrongUsageIsRefused) {
     for (const char* arguments : {"",
                                   "nosuch",
                                   "render --bogus",
+                                  "verify --bogus",
+                                  "verify nosuch",
+                                  "verify --rays 4",
+                                  "verify --subset 3",
+                                  "verify --edge-set square",
+                                  "verify --json ''",
+                                  "verify --unquantised",
+                                  "verify boxes --light 99 --quiet --size 64x64",
+                                  "verify boxes --light -1",
+                                  "verify boxes --maps /dev/null",
                                   "render one two",
                                   "render --lights -1",
                                   "render --lights 100001",
@@ -174,6 +184,37 @@ TEST_F(Program, OutputsAreFilesOfTheirOwn) {
 TEST_F(Program, NothingFartherThanFloatsReach) {
     expectRefused("render boxes --size 16x16 --quiet --camera 1e10,2,3:0,0,0", 2);
     expectRefused("render boxes --size 16x16 --unquantised", 2);
+}
+
+TEST_F(Program, VerifiesAFrame) {
+    const std::string verify = "verify boxes --size 96x54 --filter pcss --quiet --flicker 2 --json ";
+    expectGood(verify + "a.json --maps maps");
+    expectGood(verify + "b.json");
+    const nlohmann::json a = readJson("a.json"), b = readJson("b.json");
+    for (const char* key : {"acne", "leak", "contactLeak", "edgeError", "penumbraRmse", "penumbraSsim", "flicker"}) {
+        ASSERT_TRUE(a["total"][key].is_number()) << key;
+        EXPECT_GE(a["total"][key], 0.0) << key;
+        EXPECT_LE(a["total"][key], 1.0) << key;
+    }
+    EXPECT_LE(a["total"]["acne"].get<double>() + a["total"]["leak"].get<double>(), 0.001);
+    EXPECT_GT(a["total"]["counts"]["pairs"], 10'000);
+    EXPECT_EQ(a["total"], b["total"]);
+    EXPECT_EQ(a["lights"], b["lights"]);
+    ASSERT_EQ(a["lights"].size(), 3u);
+    std::uint64_t pairs = 0;
+    for (const nlohmann::json& light : a["lights"]) pairs += light["counts"]["pairs"].get<std::uint64_t>();
+    EXPECT_EQ(a["total"]["counts"]["pairs"], pairs);
+    const renderer::Picture map = renderer::readPng(folder_ / "maps" / "light_000_point.png");
+    EXPECT_EQ(map.width, 3u * 96u);
+    EXPECT_EQ(map.height, 54u);
+}
+
+TEST_F(Program, VerifiesWhatIsNotThere) {
+    expectGood("verify lights-only --filter hard --size 64x36 --quiet --json none.json");
+    EXPECT_EQ(readJson("none.json")["total"]["counts"]["pairs"], 0);
+    EXPECT_EQ(readJson("none.json")["castingLightsUnseen"], 3);
+    expectGood("verify boxes --filter hard --size 64x36 --quiet --light 1 --json one.json");
+    EXPECT_EQ(readJson("one.json")["lights"].size(), 1u);
 }
 
 TEST_F(Program, RendersAndDescribesAFrame) {

@@ -1,0 +1,34 @@
+#pragma once
+// What `verify` found, as a table and as JSON.
+
+#include <string>
+#include <vector>
+
+#include "app/frame_json.h"
+#include "renderer/truth/figures.h"
+#include "renderer/truth/flicker.h"
+
+namespace gnomon::app {
+
+struct VerifiedLight {
+    std::uint32_t index = 0;  // in the scene
+    std::string name;
+    renderer::LightKind kind = renderer::LightKind::Point;
+    bool hasShadowmap = true;  // the atlas had room
+    renderer::LightFigures figures;
+    renderer::FlickerFigures flicker;
+};
+
+struct VerifyResult {
+    std::vector<VerifiedLight> lights;  // those that cast and reach a pixel
+    renderer::LightFigures total;
+    std::uint32_t flickerFrames = 0;  // 0: not measured
+    renderer::FlickerFigures flicker;
+    std::uint32_t unseen = 0;  // casting lights that reach no pixel
+    double seconds = 0.0;
+};
+
+void printVerified(const Session& session, const VerifyResult& result);
+Json describe(const Session& session, const VerifyResult& result);
+
+}  // namespace gnomon::app

@@ -1,0 +1,56 @@
+#include "renderer/lighting/light_visibility.h"
+
+#include <cstring>
+
+namespace gnomon::renderer {
+namespace {
+
+constexpr std::uint32_t kSpirv[] = {
+#include "light_visibility.spv.h"
+};
+constexpr VkDescriptorType kOwnTypes[] = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};
+
+}  // namespace
+
+LightVisibility::LightVisibility(const Device& device, const Context& context, std::uint32_t widthPx,
+                                 std::uint32_t heightPx)
+    : device_(device),
+      ownSetLayout_(makeSetLayout(device, kOwnTypes, VK_SHADER_STAGE_COMPUTE_BIT)),
+      pool_(makeDescriptorPool(device, 1, kOwnTypes)),
+      ownSet_(allocateSet(device, pool_, ownSetLayout_)),
+      picture_(device, {.name = "light visibility",
+                        .format = VK_FORMAT_R32_SFLOAT,
+                        .width = widthPx,
+                        .height = heightPx,
+                        .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}),
+      commands_(device) {
+    const VkDescriptorSetLayout sets[] = {context.listsSetLayout(), context.receiversSetLayout(),
+                                          context.shadowmapsSetLayout(), ownSetLayout_};
+    layout_ = makePipelineLayout(device, sets, VK_SHADER_STAGE_COMPUTE_BIT, sizeof(std::uint32_t));
+    const bool oneSize = device.info().minSubgroupSize == device.info().maxSubgroupSize;
+    pipeline_ = makeComputePipeline(device, kSpirv, layout_, context.specializationValues(),
+                                    oneSize ? 0 : context.subgroupSize());
+    writeImage(device, ownSet_, 0, kOwnTypes[0], picture_.view(), VK_NULL_HANDLE, VK_IMAGE_LAYOUT_GENERAL);
+}
+
+std::vector<float> LightVisibility::read(const View& view, std::uint32_t light) {
+    const VkCommandBuffer c = commands_.begin();
+    const VkImageMemoryBarrier2 barrier =
+        imageBarrier(picture_, VK_IMAGE_LAYOUT_UNDEFINED, {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE},
+                     VK_IMAGE_LAYOUT_GENERAL, access::kComputeWrite);
+    recordBarriers(c, std::span(&barrier, 1));
+    const VkDescriptorSet sets[] = {view.listsSet(), view.receiversSet(), view.shadowmapsSet(), ownSet_};
+    vkCmdBindPipeline(c, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
+    vkCmdBindDescriptorSets(c, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 4, sets, 0, nullptr);
+    vkCmdPushConstants(c, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(light), &light);
+    const VkExtent2D tiles = view.tileCounts();
+    vkCmdDispatch(c, tiles.width, tiles.height, 1);
+    commands_.submit();
+    commands_.wait();
+    const std::vector<std::uint8_t> bytes = readImage(device_, picture_, VK_IMAGE_LAYOUT_GENERAL);
+    std::vector<float> visibility(bytes.size() / sizeof(float));
+    std::memcpy(visibility.data(), bytes.data(), bytes.size());
+    return visibility;
+}
+
+}  // namespace gnomon::renderer

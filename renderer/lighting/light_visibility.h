@@ -1,0 +1,37 @@
+#pragma once
+// Reads the visibility of single lights back: what the lighting passes of the last frame multiplied each light with.
+
+#include <cstdint>
+#include <vector>
+
+#include "gnomon/tiled_shadows.h"
+#include "renderer/gpu/pipeline.h"
+#include "renderer/gpu/resources.h"
+
+namespace gnomon::renderer {
+
+/// Stands for a pixel that the light does not reach (range, cone, background), or a light that is not in view.
+inline constexpr float kNotReached = -1.0f;
+
+/// Not thread safe.
+class LightVisibility {
+public:
+    /// Throws GpuError.
+    LightVisibility(const Device& device, const Context& context, std::uint32_t widthPx, std::uint32_t heightPx);
+
+    /// Of the light with this index among those given to the view's last frame, which must have had phase 4 and have
+    /// finished. Per pixel 0 to 1 or kNotReached. Waits for the device.
+    [[nodiscard]] std::vector<float> read(const View& view, std::uint32_t light);
+
+private:
+    const Device& device_;
+    SetLayout ownSetLayout_;
+    PipelineLayout layout_;
+    Pipeline pipeline_;
+    DescriptorPool pool_;
+    VkDescriptorSet ownSet_ = VK_NULL_HANDLE;
+    GpuImage picture_;
+    Commands commands_;
+};
+
+}  // namespace gnomon::renderer

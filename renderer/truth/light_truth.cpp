@@ -1,0 +1,154 @@
+#include "renderer/truth/light_truth.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+#include <thread>
+
+#include "renderer/truth/random.h"
+
+namespace gnomon::renderer {
+namespace {
+
+constexpr double kEdgePixels = 2.0, kEdgeTexels = 1.5;
+constexpr int kEdgePoints = 8;
+// Faces are taken to slant by at most 84 degrees: a footprint ends somewhere.
+constexpr double kLeastCosine = 0.1;
+// A result's face normal has 16 bits, and within them it may see a face look at the light or away from it.
+constexpr double kUndecidedCosine = 1e-4;
+// A neighbour that continues a face is as flat as floats can say.
+constexpr double kFlatness = 1e-6;
+
+class Tracer {
+public:
+    Tracer(const TracedScene& scene, std::span<const TruthReceiver> receivers, TruthExtent extent,
+           const LightTruthDesc& desc, std::span<const float> result)
+        : scene_(scene), receivers_(receivers), extent_(extent), desc_(desc), result_(result) {
+        const SceneLight& light = desc.light;
+        source_.kind = light.kind;
+        source_.position = glm::dvec3(light.position) - scene.origin();
+        source_.direction = glm::normalize(glm::dvec3(light.direction));
+        source_.radius = static_cast<double>(light.sourceRadius);
+        viewsFromTraced_ = scene.origin() - desc.viewsOrigin;
+        while (blockTiles_ * blockTiles_ < desc.subsetOf) ++blockTiles_;
+    }
+
+    void traceRow(std::uint32_t y, std::span<PixelTruth> row) const {
+        for (std::uint32_t x = 0; x < extent_.widthPx; ++x) {
+            const std::size_t i = std::size_t{y} * extent_.widthPx + x;
+            row[x] = traced(receivers_[i], result_.empty() ? nullptr : &result_[i], x, y);
+        }
+    }
+
+private:
+    [[nodiscard]] bool reaches(const glm::dvec3& p) const {
+        if (source_.kind == LightKind::Directional) return true;
+        const glm::dvec3 d = p - source_.position;
+        const double distance = glm::length(d);
+        if (distance > static_cast<double>(desc_.light.rangeMetres)) return false;
+        const double outer = std::min(static_cast<double>(desc_.light.outerConeAngle), 1.55);
+        return source_.kind != LightKind::Spot || glm::dot(d, source_.direction) >= std::cos(outer) * distance;
+    }
+
+    [[nodiscard]] bool inSubset(std::uint32_t x, std::uint32_t y) const {
+        const std::uint32_t tileX = x / kSubsetTilePx, tileY = y / kSubsetTilePx;
+        const std::uint64_t block = std::uint64_t{tileY / blockTiles_} << 32 | tileX / blockTiles_;
+        const std::uint64_t chosen = mixedBits(mixedBits(desc_.seed) ^ block) % (blockTiles_ * blockTiles_);
+        return chosen == tileY % blockTiles_ * blockTiles_ + tileX % blockTiles_;
+    }
+
+    // The point `k` of the edge set, relative to the receiver, on its plane.
+    [[nodiscard]] glm::dvec3 edgeOffset(const TruthReceiver& r, const glm::dvec3& toLight, double texel, int k) const {
+        const double angle = 2.0 * std::numbers::pi * k / kEdgePoints;
+        const glm::dvec3 n = r.normal;
+        glm::dvec3 slope = toLight - glm::dot(toLight, n) * n;
+        if (!(glm::length(slope) > 1e-6))
+            slope = glm::cross(n, std::abs(n.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0));
+        slope = glm::normalize(slope);
+        const glm::dvec3 level = glm::cross(n, slope);
+        const double pixels = kEdgePixels * r.pixelMetres, texels = kEdgeTexels * texel;
+        if (desc_.edgeSet == EdgeSet::Circle)
+            return std::max(pixels, texels) * (std::cos(angle) * slope + std::sin(angle) * level);
+        const double cosine = std::max(std::abs(glm::dot(toLight, n)), kLeastCosine);
+        const glm::dvec3 inMap = std::cos(angle) / cosine * slope + std::sin(angle) * level;
+        const glm::dvec3 seen = inMap - glm::dot(inMap, r.toEye) * r.toEye;
+        const double seenLength = std::max(glm::length(seen), kLeastCosine * glm::length(inMap));
+        return std::max(texels, pixels / seenLength) * inMap;
+    }
+
+    [[nodiscard]] bool isEdge(const TruthReceiver& r, const glm::dvec3& toLight, bool dark) const {
+        const double cosine = glm::dot(r.normal, toLight);
+        if (std::abs(cosine) < kUndecidedCosine) return true;
+        if (!r.subsurface && cosine < 0.0) return false;
+        const double texel = shadowTexelMetres(desc_.views, source_.kind, source_.position + viewsFromTraced_,
+                                               r.position + viewsFromTraced_);
+        const glm::dvec3 world = glm::abs(r.position + scene_.origin());
+        const double flatness =
+            kFlatness * (1.0 + std::max({world.x, world.y, world.z})) / std::max(std::abs(cosine), 1e-2);
+        for (int k = 0; k < kEdgePoints; ++k) {
+            const glm::dvec3 q = r.position + edgeOffset(r, toLight, texel, k);
+            const glm::dvec3 end = endOfRay(source_, q, scene_.reachMetres() + 1.0);
+            if (scene_.blocked({q, end, r.triangle, flatness}) != dark) return true;
+        }
+        return false;
+    }
+
+    [[nodiscard]] PixelTruth traced(const TruthReceiver& r, const float* result, std::uint32_t x,
+                                    std::uint32_t y) const {
+        PixelTruth truth;
+        if (r.triangle == kNone || !reaches(r.position) || (result != nullptr && *result < 0.0f)) return truth;
+        const glm::dvec3 toLight = directionTo(source_, r.position);
+        truth.subset = inSubset(x, y);
+        truth.subsurface = r.subsurface;
+        if (!r.subsurface && glm::dot(r.normal, toLight) <= 0.0) {
+            truth.hard = HardTruth::Away;
+        } else {
+            const double blocker = scene_.nearestBlocker(
+                {r.position, endOfRay(source_, r.position, scene_.reachMetres() + 1.0), r.triangle});
+            truth.hard = std::isfinite(blocker) ? HardTruth::Dark : HardTruth::Lit;
+            truth.blockerMetres = static_cast<float>(blocker);
+        }
+        const bool dark = truth.hard != HardTruth::Lit;
+        truth.edge = isEdge(r, toLight, dark);
+        if (!desc_.soft) return truth;
+        const float most = truth.edge ? 0.5f : kFaint;
+        const bool disagrees = result != nullptr && (dark ? *result > most : *result < 1.0f - most);
+        if (truth.hard == HardTruth::Away) {
+            truth.soft = 0.0f;
+        } else if (truth.subset || disagrees) {
+            const std::uint64_t seed = mixedBits(desc_.seed ^ mixedBits(std::uint64_t{y} << 32 | x));
+            truth.soft = static_cast<float>(softVisibility(scene_, r, source_, desc_.softRaysPerSide, seed));
+        }
+        return truth;
+    }
+
+    const TracedScene& scene_;
+    std::span<const TruthReceiver> receivers_;
+    TruthExtent extent_;
+    const LightTruthDesc& desc_;
+    std::span<const float> result_;
+    LightSource source_;
+    std::uint32_t blockTiles_ = 1;  // across a block of tiles, one of which is in the subset
+    glm::dvec3 viewsFromTraced_{0.0};
+};
+
+}  // namespace
+
+std::vector<PixelTruth> traceLight(const TracedScene& scene, std::span<const TruthReceiver> receivers,
+                                   TruthExtent extent, const LightTruthDesc& desc, std::span<const float> result) {
+    std::vector<PixelTruth> out(receivers.size());
+    const Tracer tracer(scene, receivers, extent, desc, result);
+    std::atomic<std::uint32_t> next = 0;
+    const auto work = [&] {
+        for (std::uint32_t y = next++; y < extent.heightPx; y = next++)
+            tracer.traceRow(y, std::span(out).subspan(std::size_t{y} * extent.widthPx, extent.widthPx));
+    };
+    const std::uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1u, std::max(extent.heightPx, 1u));
+    std::vector<std::jthread> pool;
+    for (std::uint32_t i = 1; i < threads; ++i) pool.emplace_back(work);
+    work();
+    return pool.clear(), out;
+}
+
+}  // namespace gnomon::renderer

@@ -1,0 +1,115 @@
+// The whole way of `gnomon verify`: a frame's visibility, light by light, against ray-traced truth. The bounds are the
+// limits that the depth bias promises.
+#include <algorithm>
+#include <cstdio>
+
+#include "image/renderer/harness.h"
+#include "renderer/truth/figures.h"
+
+namespace gnomon::renderer::image_test {
+namespace {
+
+GNOMON_IMAGE_TEST_SUITE(Verify);
+
+constexpr double kMostAcneAndLeak = 0.001, kMostContactLeak = 0.01;
+
+struct Verified {
+    Figures figures;
+    std::vector<float> visibility;  // of the last light
+    std::vector<PixelTruth> truth;
+    HdrPicture picture;
+};
+
+Verified verified(const Device& device, const View3d& view, const RendererDesc& desc) {
+    Renderer renderer(device, view.scene, desc);
+    Verified out;
+    out.picture = draw(renderer, view.camera, ShadowMode::Deferred).linear;
+    const Pose pose = poseAt(view.scene, 0.0);
+    const SceneCamera camera = posedCamera(view.scene, pose, view.camera);
+    const TracedScene traced(view.scene, pose, glm::dvec3(camera.worldFromCamera[3]));
+    const TruthExtent extent = {desc.widthPx, desc.heightPx};
+    const std::vector<TruthReceiver> receivers =
+        receiversOf(traced, camera, extent.widthPx, extent.heightPx, renderer.readTriangleIds());
+    for (std::uint32_t i = 0; i < pose.lights.size(); ++i) {
+        LightTruthDesc light;
+        light.light = pose.lights[i];
+        light.views = renderer.shadowViews(i);
+        light.viewsOrigin = renderer.frameOrigin();
+        light.soft = desc.filter == Filter::Pcss;
+        light.subsetOf = 4;
+        out.visibility = renderer.readVisibility(i);
+        out.truth = traceLight(traced, receivers, extent, light, out.visibility);
+        const LightFigures figures = figuresOf(out.truth, out.visibility, extent, light.soft);
+        out.figures += figures.opaque;
+        out.figures += figures.subsurface;
+    }
+    return out;
+}
+
+TEST_P(Verify, AcneAndLeakStayWithinTheirLimits) {
+    struct {
+        const char* scene;
+        Filter filter;
+        const char* name;
+        bool always;
+    } const cases[] = {{"boxes", Filter::Pcss, "pcss", true},
+                       {"sphere-on-plane", Filter::Pcf, "pcf", true},
+                       {"masked", Filter::Hard, "hard", true},
+                       {"sundial", Filter::Pcss, "pcss", false},
+                       {"cloth", Filter::Pcf, "pcf", false}};
+    for (const auto& [scene, filter, name, always] : cases) {
+        if (!always && !fullRun()) continue;
+        SCOPED_TRACE(std::string(scene) + " " + name);
+        RendererDesc desc = smallDesc(160, 90);
+        desc.filter = filter;
+        const Figures f = verified(device(), builtin(scene), desc).figures;
+        std::printf(
+            "[ figure   ] %s: %s %s: of %llu pairs acne %.4f %%, leak %.4f %%, contact leak %.4f %%; rmse %.4f\n",
+            device().info().name.c_str(), scene, name, static_cast<unsigned long long>(f.pairs),
+            100.0 * f.share(f.acne), 100.0 * f.share(f.leak), 100.0 * f.share(f.contactLeak), f.penumbraRmse());
+        EXPECT_GT(f.pairs, 5000u);
+        EXPECT_GT(f.dark, 100u);
+        EXPECT_LE(f.share(f.acne + f.leak), kMostAcneAndLeak);
+        EXPECT_LE(f.share(f.contactLeak), kMostContactLeak);
+    }
+}
+
+// The same comparison tells a result that is wrong: every shadow lost, and every light.
+TEST_P(Verify, LostShadowsAndLightsAreTold) {
+    RendererDesc desc = smallDesc(160, 90);
+    desc.filter = Filter::Hard;
+    Verified v = verified(device(), builtin("sphere-on-plane"), desc);
+    const TruthExtent extent = {desc.widthPx, desc.heightPx};
+    for (float& visibility : v.visibility) visibility = visibility < 0.0f ? visibility : 1.0f;
+    EXPECT_GT(figuresOf(v.truth, v.visibility, extent, false).opaque.leak, 50u);
+    for (float& visibility : v.visibility) visibility = visibility < 0.0f ? visibility : 0.0f;
+    EXPECT_GT(figuresOf(v.truth, v.visibility, extent, false).opaque.acne, 5000u);
+}
+
+// What is read is what the lighting used: with pools far too small it is evaluated, and the same.
+TEST_P(Verify, VisibilityIsTheSameWithOverflow) {
+    const View3d view = builtin("boxes");
+    RendererDesc desc = smallDesc(160, 90);
+    desc.filter = Filter::Pcf;
+    const auto allOf = [&](const RendererDesc& d) {
+        Renderer renderer(device(), view.scene, d);
+        renderer.renderFrame(view.camera, ShadowMode::Deferred);
+        std::vector<float> all;
+        for (std::uint32_t i = 0; i < view.scene.lights.size(); ++i)
+            for (const float visibility : renderer.readVisibility(i)) all.push_back(visibility);
+        return all;
+    };
+    const std::vector<float> roomy = allOf(desc);
+    desc.listEntries = 64;
+    desc.visibilitySlots = 16;
+    EXPECT_EQ(roomy, allOf(desc));
+    EXPECT_GT(std::ranges::count(roomy, 1.0f), 1000);
+    EXPECT_GT(std::ranges::count(roomy, 0.0f), 1000);
+    Renderer renderer(device(), view.scene, desc);
+    renderer.renderFrame(view.camera, ShadowMode::Deferred);
+    const std::vector<float> none = renderer.readVisibility(1000);
+    EXPECT_EQ(std::ranges::count(none, -1.0f), std::ssize(none)) << "there is no such light";
+}
+
+}  // namespace
+}  // namespace gnomon::renderer::image_test

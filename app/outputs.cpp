@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <stdexcept>
 
 #include "app/errors.h"
 #include "renderer/picture/picture.h"
@@ -38,7 +39,12 @@ void checkOutputs(std::span<const std::string> outputs, std::span<const std::str
         }
     }
     for (const std::string& file : outputs) {
-        if (!file.empty()) renderer::checkWritable(file);
+        if (file.empty()) continue;
+        try {
+            renderer::checkWritable(file);
+        } catch (const std::runtime_error& error) {
+            throw UsageError(error.what());
+        }
     }
 }
 

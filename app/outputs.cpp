@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <set>
+#include <stdexcept>
 
 #include "app/errors.h"
 #include "renderer/picture/picture.h"
@@ -36,7 +37,12 @@ void checkOutputs(std::span<const std::string> outputs, std::span<const std::str
         if (!written.insert(path).second) throw UsageError(fmt::format("'{}' is named for two outputs.", output));
     }
     for (const std::string& file : outputs) {
-        if (!file.empty()) renderer::checkWritable(file);
+        if (file.empty()) continue;
+        try {
+            renderer::checkWritable(file);
+        } catch (const std::runtime_error& error) {
+            throw UsageError(error.what());
+        }
     }
 }
 

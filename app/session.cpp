@@ -11,6 +11,7 @@
 #include "renderer/builtin/builtin.h"
 #include "renderer/scene/load_gltf.h"
 #include "renderer/scene/play_animation.h"
+#include "renderer/scene/pose.h"
 
 namespace gnomon::app {
 namespace {
@@ -90,16 +91,14 @@ Scene loadScene(const Settings& settings, const renderer::RendererDesc& desc) {
     return scene;
 }
 
-// Floats that far out are coarser than anything a picture could show, and no frame's origin helps.
-constexpr float kFarthestMetres = 1e8f;
-
 bool tooFar(const glm::vec3& p) {
-    return !(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kFarthestMetres);
+    return !(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= renderer::kFarthestMetres);
 }
 
 void checkReachable(const Scene& scene, const renderer::SceneCamera& camera) {
     if (tooFar(glm::vec3(camera.worldFromCamera[3])))
-        throw UsageError(fmt::format("The camera is farther than {:g} m from the scene's origin.", kFarthestMetres));
+        throw UsageError(
+            fmt::format("The camera is farther than {:g} m from the scene's origin.", renderer::kFarthestMetres));
     for (const renderer::SceneLight& light : scene.lights) {
         const glm::vec3 candela = light.colour * light.intensity;
         const bool finite = std::isfinite(candela.x) && std::isfinite(candela.y) && std::isfinite(candela.z) &&
@@ -107,7 +106,7 @@ void checkReachable(const Scene& scene, const renderer::SceneCamera& camera) {
         if (!finite) throw UsageError(fmt::format("The light '{}' is too bright to be computed.", light.name));
         if (light.kind != renderer::LightKind::Directional && tooFar(light.position))
             throw UsageError(fmt::format("The light '{}' is farther than {:g} m from the scene's origin.", light.name,
-                                         kFarthestMetres));
+                                         renderer::kFarthestMetres));
     }
 }
 

@@ -7,18 +7,18 @@
 
 #include "app/errors.h"
 #include "app/progress.h"
+#include "gpu_interface/numbers.h"
 
 namespace gnomon::app {
 namespace {
 
 constexpr std::uint32_t kMostPoolEntries = 1u << 30;
-constexpr std::uint32_t kMostTaps = 64;
 
-// All of `text` as a number from 1 to kMostPixelsAcross; 0 otherwise.
-std::uint32_t pixelsAcross(std::string_view text) {
+// All of `text` as a number from 1 to `most`; 0 otherwise.
+std::uint32_t positiveInteger(std::string_view text, std::uint32_t most) {
     std::uint32_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool good = error == std::errc() && end == text.data() + text.size() && value <= kMostPixelsAcross;
+    const bool good = error == std::errc() && end == text.data() + text.size() && value <= most;
     return good ? value : 0;
 }
 
@@ -29,23 +29,21 @@ PcssTaps parseTaps(const std::string& text) {
     const std::size_t comma = text.find(',');
     PcssTaps taps = {0, 0};
     if (comma != std::string::npos) {
-        taps.searchTaps = pixelsAcross(std::string_view(text).substr(0, comma));
-        taps.filterTaps = pixelsAcross(std::string_view(text).substr(comma + 1));
+        taps.searchTaps = positiveInteger(std::string_view(text).substr(0, comma), gpu::kMaxPcssTaps);
+        taps.filterTaps = positiveInteger(std::string_view(text).substr(comma + 1), gpu::kMaxPcssTaps);
     }
-    const auto good = [](std::uint32_t count) { return count >= 1 && count <= kMostTaps; };
-    if (!good(taps.searchTaps) || !good(taps.filterTaps))
+    if (taps.searchTaps == 0 || taps.filterTaps == 0)
         throw UsageError(
-            fmt::format("'{}' are no taps: give low, medium, high or SEARCH,FILTER as in 16,24, each from "
-                        "1 to {}.",
-                        text, kMostTaps));
+            fmt::format("'{}' are no taps: give low, medium, high or SEARCH,FILTER as in 16,24, each from 1 to {}.",
+                        text, gpu::kMaxPcssTaps));
     return taps;
 }
 
 void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
     const std::size_t cross = text.find('x');
     if (cross != std::string::npos) {
-        width = pixelsAcross(std::string_view(text).substr(0, cross));
-        height = pixelsAcross(std::string_view(text).substr(cross + 1));
+        width = positiveInteger(std::string_view(text).substr(0, cross), kMostPixelsAcross);
+        height = positiveInteger(std::string_view(text).substr(cross + 1), kMostPixelsAcross);
     }
     if (cross == std::string::npos || width == 0 || height == 0)
         throw UsageError(fmt::format("'{}' is no size: give WIDTHxHEIGHT as in 1280x720, each from 1 to {} pixels.",

@@ -128,9 +128,7 @@ ShadowPlanSettings planSettingsOf(const Device& device, const Scene& scene, cons
     return settings;
 }
 
-// Floats that far out are coarser than anything a picture could show, and no frame's origin helps.
 void requireReachable(const glm::vec3& position, const char* what, const std::string& name) {
-    constexpr float kFarthestMetres = 1e8f;
     if (std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) <= kFarthestMetres) return;
     throw PoseError(std::string("An animation throws the ") + what + " '" + name.substr(0, 60) +
                     "' farther than 100,000 km from the origin.");

@@ -69,8 +69,9 @@ struct Light {
 };
 
 /// One view of a light, drawn by the host into a rectangle of one of its shadow atlases (D32 or D16, any age).
-/// A spot needs one view that holds its cone; a directional light one orthographic view per cascade; a point light six, of 90 degrees or a little more: where the rectangle
-/// reaches a few texels beyond 90 degrees, filters are seamless across faces.
+/// A spot needs one view that holds its cone; a directional light one orthographic view per cascade; a point light six,
+/// of 90 degrees or a little more: where the rectangle reaches a few texels beyond 90 degrees, filters are seamless
+/// across faces.
 struct ShadowView {
     /// Perspective: clip w is the distance along the view's axis in metres.
     float clipFromWorld[16] = {};

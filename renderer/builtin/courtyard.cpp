@@ -131,7 +131,8 @@ void addFlight(SceneBuilder& b) {
     constexpr int kKeys = 240;
     const auto view = [](float t) {
         const float angle = 6.28318530718f * t;
-        const glm::vec3 eye(-9.0f * std::cos(angle), 3.1f + 1.4f * std::sin(2.0f * angle + 0.6f), 5.2f * std::sin(angle));
+        const float height = 3.1f + 1.4f * std::sin(2.0f * angle + 0.6f);
+        const glm::vec3 eye(-9.0f * std::cos(angle), height, 5.2f * std::sin(angle));
         return lookingAt(eye, {1.5f * std::cos(angle), 1.7f, -1.2f * std::sin(angle)});
     };
     const auto turn = [view](float t) { return glm::normalize(glm::quat_cast(glm::mat3(view(t)))); };

@@ -69,7 +69,8 @@ void main() {
     const vec2 normalUv = textureUv(material.normalUse, uv0, uv1);
     const vec3 dpx = dFdx(positionWs), dpy = dFdy(positionWs);
     const vec2 duvx = dFdx(normalUv), duvy = dFdy(normalUv);
-    const vec4 base = material.baseColour * colour * texture(baseColourTexture, textureUv(material.baseColourUse, uv0, uv1));
+    const vec2 baseUv = textureUv(material.baseColourUse, uv0, uv1);
+    const vec4 base = material.baseColour * colour * texture(baseColourTexture, baseUv);
     const vec3 n = shadingNormal(dpx, dpy, normalUv, duvx, duvy);
     const vec4 mr = texture(metallicRoughnessTexture, textureUv(material.metallicRoughnessUse, uv0, uv1));
     const vec3 emissive = texture(emissiveTexture, textureUv(material.emissiveUse, uv0, uv1)).rgb;
@@ -79,7 +80,8 @@ void main() {
     const bool subsurface = (material.flags & kMaterialSubsurfaceBit) != 0u;
     outBaseColour = vec4(base.rgb, 1.0);
     outNormal = packOctahedral(n);
-    outMaterial = vec4(material.metallicRoughness.x * mr.b, material.metallicRoughness.y * mr.g, subsurface ? 1.0 : 0.0, 0.0);
+    outMaterial =
+        vec4(material.metallicRoughness.x * mr.b, material.metallicRoughness.y * mr.g, subsurface ? 1.0 : 0.0, 0.0);
     outEmissive = material.emissiveAlphaCutoff.xyz * emissive;
     outFaceNormal = packOctahedral(dot(faceNormalWs, faceNormalWs) > 0.5 ? faceNormalWs : n);
     outReceiver = uvec2(255u, subsurface ? 1u : 0u);

@@ -15,8 +15,8 @@ namespace gnomon::renderer {
 /// samplerAnisotropy where present; robustBufferAccess stays off. Not thread safe.
 class Device {
 public:
-    /// The instance must outlive the device. `extensions` (for example VK_KHR_swapchain) must exist; `moreFeatures` is a
-    /// chain of feature structures that they need. Throws GpuError.
+    /// The instance must outlive the device. `extensions` (for example VK_KHR_swapchain) must exist; `moreFeatures` is
+    /// a chain of feature structures that they need. Throws GpuError.
     Device(const VulkanInstance& instance, const DeviceInfo& info, const std::vector<const char*>& extensions = {},
            void* moreFeatures = nullptr);
     ~Device();

@@ -15,46 +15,65 @@ namespace {
 // float step is 0.06 mm, below anything the bias of 2 mm would notice.
 constexpr float kFarFromOriginMetres = 1024.0f;
 
+// What the primitive's vertices are stored relative to.
+glm::dvec3 storageOriginOf(const Primitive& primitive) {
+    Bounds bounds;
+    for (const glm::vec3& p : primitive.positions) bounds.add(p);
+    const bool far = !bounds.empty() && glm::length(bounds.centre()) > kFarFromOriginMetres;
+    return far ? glm::dvec3(bounds.centre()) : glm::dvec3(0.0);
+}
+
+std::vector<glm::vec3> positionsFrom(const glm::dvec3& origin, const Primitive& primitive) {
+    std::vector<glm::vec3> out(primitive.positions.size());
+    std::transform(primitive.positions.begin(), primitive.positions.end(), out.begin(),
+                   [&](const glm::vec3& p) { return glm::vec3(glm::dvec3(p) - origin); });
+    return out;
+}
+
+std::uint32_t itemFlagsOf(const Primitive& primitive) {
+    const bool hasNormals = !primitive.normals.empty(), hasTangents = hasNormals && !primitive.tangents.empty();
+    const bool hasExtras = !primitive.texcoords[1].empty() || !primitive.colours.empty();
+    return (hasNormals ? kItemNormalsBit : 0u) | (hasTangents ? kItemTangentsBit : 0u) |
+           (hasExtras ? kItemExtrasBit : 0u);
+}
+
 }  // namespace
 
 struct GpuScene::Streams {
     std::vector<float> positions;
     std::vector<std::uint32_t> attributes, extras, indices;
+
+    void addAttributes(const Primitive& primitive, std::uint32_t itemFlags);
 };
+
+void GpuScene::Streams::addAttributes(const Primitive& primitive, std::uint32_t itemFlags) {
+    const bool hasNormals = (itemFlags & kItemNormalsBit) != 0, hasTangents = (itemFlags & kItemTangentsBit) != 0;
+    const bool hasExtras = (itemFlags & kItemExtrasBit) != 0;
+    for (std::size_t v = 0; v < primitive.positions.size(); ++v) {
+        const glm::vec2 uv = primitive.texcoords[0].empty() ? glm::vec2(0.0f) : primitive.texcoords[0][v];
+        attributes.insert(attributes.end(), {hasNormals ? packNormal(primitive.normals[v]) : 0u,
+                                             hasTangents ? packTangent(primitive.tangents[v]) : 0u,
+                                             glm::floatBitsToUint(uv.x), glm::floatBitsToUint(uv.y)});
+        if (!hasExtras) continue;
+        const glm::vec2 uv1 = primitive.texcoords[1].empty() ? uv : primitive.texcoords[1][v];
+        const glm::vec4 colour = primitive.colours.empty() ? glm::vec4(1.0f) : primitive.colours[v];
+        extras.insert(extras.end(), {glm::floatBitsToUint(uv1.x), glm::floatBitsToUint(uv1.y),
+                                     glm::packHalf2x16({colour.x, colour.y}), glm::packHalf2x16({colour.z, colour.w})});
+    }
+}
 
 void GpuScene::addGeometry(const Primitive& primitive, bool deforms, bool skinned, Streams& streams) {
     Geometry geometry;
     const auto firstVertex = static_cast<std::uint32_t>(streams.positions.size() / 3);
     geometry.firstTriangle = static_cast<std::uint32_t>(streams.indices.size() / 3);
     geometry.triangleCount = static_cast<std::uint32_t>(primitive.indices.size() / 3);
-    Bounds bounds;
-    for (const glm::vec3& p : primitive.positions) bounds.add(p);
     // Skinned vertices count from an anchor of their own.
-    if (!skinned && !bounds.empty() && glm::length(bounds.centre()) > kFarFromOriginMetres)
-        geometry.offset = glm::dvec3(bounds.centre());
-
-    std::vector<glm::vec3> stored(primitive.positions.size());
-    std::transform(primitive.positions.begin(), primitive.positions.end(), stored.begin(),
-                   [&](const glm::vec3& p) { return glm::vec3(glm::dvec3(p) - geometry.offset); });
+    if (!skinned) geometry.offset = storageOriginOf(primitive);
+    const std::vector<glm::vec3> stored = positionsFrom(geometry.offset, primitive);
     for (const glm::vec3& p : stored) streams.positions.insert(streams.positions.end(), {p.x, p.y, p.z});
-
-    const bool hasNormals = !primitive.normals.empty(), hasTangents = hasNormals && !primitive.tangents.empty();
-    const bool hasExtras = !primitive.texcoords[1].empty() || !primitive.colours.empty();
-    geometry.flags =
-        (hasNormals ? kItemNormalsBit : 0u) | (hasTangents ? kItemTangentsBit : 0u) | (hasExtras ? kItemExtrasBit : 0u);
+    geometry.flags = itemFlagsOf(primitive);
     geometry.extraOffset = static_cast<std::uint32_t>(streams.extras.size() / kExtraWords) - firstVertex;
-    for (std::size_t v = 0; v < stored.size(); ++v) {
-        const glm::vec2 uv = primitive.texcoords[0].empty() ? glm::vec2(0.0f) : primitive.texcoords[0][v];
-        streams.attributes.insert(streams.attributes.end(), {hasNormals ? packNormal(primitive.normals[v]) : 0u,
-                                                             hasTangents ? packTangent(primitive.tangents[v]) : 0u,
-                                                             glm::floatBitsToUint(uv.x), glm::floatBitsToUint(uv.y)});
-        if (!hasExtras) continue;
-        const glm::vec2 uv1 = primitive.texcoords[1].empty() ? uv : primitive.texcoords[1][v];
-        const glm::vec4 colour = primitive.colours.empty() ? glm::vec4(1.0f) : primitive.colours[v];
-        streams.extras.insert(streams.extras.end(),
-                              {glm::floatBitsToUint(uv1.x), glm::floatBitsToUint(uv1.y),
-                               glm::packHalf2x16({colour.x, colour.y}), glm::packHalf2x16({colour.z, colour.w})});
-    }
+    streams.addAttributes(primitive, geometry.flags);
 
     ClusteredTriangles split;
     if (deforms) {

@@ -27,6 +27,83 @@ VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderM
     return info;
 }
 
+VkPipelineRasterizationStateCreateInfo rasterOf(const GraphicsPipelineDesc& desc) {
+    VkPipelineRasterizationStateCreateInfo raster{};
+    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
+    raster.polygonMode = VK_POLYGON_MODE_FILL;
+    raster.cullMode = desc.cull;
+    raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+    raster.lineWidth = 1.0f;
+    return raster;
+}
+
+VkPipelineDepthStencilStateCreateInfo depthOf(const GraphicsPipelineDesc& desc) {
+    VkPipelineDepthStencilStateCreateInfo depth{};
+    depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
+    depth.depthTestEnable = desc.depthFormat != VK_FORMAT_UNDEFINED;
+    depth.depthWriteEnable = desc.depthWrite;
+    depth.depthCompareOp = desc.depthCompare;
+    return depth;
+}
+
+std::vector<VkDynamicState> dynamicStatesOf(const GraphicsPipelineDesc& desc) {
+    std::vector<VkDynamicState> states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+    if (desc.dynamicCull) states.insert(states.end(), {VK_DYNAMIC_STATE_CULL_MODE, VK_DYNAMIC_STATE_FRONT_FACE});
+    if (desc.dynamicDepthCompare) states.push_back(VK_DYNAMIC_STATE_DEPTH_COMPARE_OP);
+    return states;
+}
+
+// All state but the stages.
+Pipeline makeWithStages(const Device& device, const GraphicsPipelineDesc& desc,
+                        std::span<const VkPipelineShaderStageCreateInfo> stages) {
+    VkPipelineVertexInputStateCreateInfo input{};
+    input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
+    VkPipelineInputAssemblyStateCreateInfo assembly{};
+    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
+    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    VkPipelineViewportStateCreateInfo viewport{};
+    viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
+    viewport.viewportCount = viewport.scissorCount = 1;
+    const VkPipelineRasterizationStateCreateInfo raster = rasterOf(desc);
+    VkPipelineMultisampleStateCreateInfo samples{};
+    samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
+    samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+    const VkPipelineDepthStencilStateCreateInfo depth = depthOf(desc);
+    VkPipelineColorBlendAttachmentState blend{};
+    blend.colorWriteMask = 0xF;
+    const std::vector<VkPipelineColorBlendAttachmentState> blends(desc.colourFormats.size(), blend);
+    VkPipelineColorBlendStateCreateInfo colour{};
+    colour.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
+    colour.attachmentCount = static_cast<std::uint32_t>(blends.size());
+    colour.pAttachments = blends.data();
+    const std::vector<VkDynamicState> states = dynamicStatesOf(desc);
+    VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO, nullptr, 0,
+                                             static_cast<std::uint32_t>(states.size()), states.data()};
+    VkPipelineRenderingCreateInfo rendering{};
+    rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
+    rendering.colorAttachmentCount = static_cast<std::uint32_t>(desc.colourFormats.size());
+    rendering.pColorAttachmentFormats = desc.colourFormats.data();
+    rendering.depthAttachmentFormat = desc.depthFormat;
+    VkGraphicsPipelineCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+    info.pNext = &rendering;
+    info.stageCount = static_cast<std::uint32_t>(stages.size());
+    info.pStages = stages.data();
+    info.pVertexInputState = &input;
+    info.pInputAssemblyState = &assembly;
+    info.pViewportState = &viewport;
+    info.pRasterizationState = &raster;
+    info.pMultisampleState = &samples;
+    info.pDepthStencilState = &depth;
+    info.pColorBlendState = &colour;
+    info.pDynamicState = &dynamic;
+    info.layout = desc.layout;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    check(vkCreateGraphicsPipelines(device.handle(), device.pipelineCache(), 1, &info, nullptr, &pipeline),
+          "creating a graphics pipeline");
+    return {device.handle(), pipeline};
+}
+
 }  // namespace
 
 SetLayout makeSetLayout(const Device& device, std::span<const VkDescriptorType> types, VkShaderStageFlags stages) {
@@ -95,68 +172,10 @@ void writeImage(const Device& device, VkDescriptorSet set, std::uint32_t binding
 Pipeline makeGraphicsPipeline(const Device& device, const GraphicsPipelineDesc& desc) {
     const ShaderModule vertex(device, desc.vertexSpirv);
     std::vector<VkPipelineShaderStageCreateInfo> stages{stageInfo(VK_SHADER_STAGE_VERTEX_BIT, vertex.handle)};
-    std::unique_ptr<ShaderModule> fragment;
-    if (!desc.fragmentSpirv.empty()) {
-        fragment = std::make_unique<ShaderModule>(device, desc.fragmentSpirv);
-        stages.push_back(stageInfo(VK_SHADER_STAGE_FRAGMENT_BIT, fragment->handle));
-    }
-    VkPipelineVertexInputStateCreateInfo input{};
-    input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
-    VkPipelineInputAssemblyStateCreateInfo assembly{};
-    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    VkPipelineViewportStateCreateInfo viewport{};
-    viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
-    viewport.viewportCount = viewport.scissorCount = 1;
-    VkPipelineRasterizationStateCreateInfo raster{};
-    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-    raster.polygonMode = VK_POLYGON_MODE_FILL;
-    raster.cullMode = desc.cull;
-    raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-    raster.lineWidth = 1.0f;
-    VkPipelineMultisampleStateCreateInfo samples{};
-    samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-    samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-    VkPipelineDepthStencilStateCreateInfo depth{};
-    depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-    depth.depthTestEnable = desc.depthFormat != VK_FORMAT_UNDEFINED;
-    depth.depthWriteEnable = desc.depthWrite;
-    depth.depthCompareOp = desc.depthCompare;
-    VkPipelineColorBlendAttachmentState blend{};
-    blend.colorWriteMask = 0xF;
-    const std::vector<VkPipelineColorBlendAttachmentState> blends(desc.colourFormats.size(), blend);
-    VkPipelineColorBlendStateCreateInfo colour{};
-    colour.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-    colour.attachmentCount = static_cast<std::uint32_t>(blends.size());
-    colour.pAttachments = blends.data();
-    std::vector<VkDynamicState> states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-    if (desc.dynamicCull) states.insert(states.end(), {VK_DYNAMIC_STATE_CULL_MODE, VK_DYNAMIC_STATE_FRONT_FACE});
-    if (desc.dynamicDepthCompare) states.push_back(VK_DYNAMIC_STATE_DEPTH_COMPARE_OP);
-    VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO, nullptr, 0,
-                                             static_cast<std::uint32_t>(states.size()), states.data()};
-    VkPipelineRenderingCreateInfo rendering{};
-    rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
-    rendering.colorAttachmentCount = static_cast<std::uint32_t>(desc.colourFormats.size());
-    rendering.pColorAttachmentFormats = desc.colourFormats.data();
-    rendering.depthAttachmentFormat = desc.depthFormat;
-    VkGraphicsPipelineCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
-    info.pNext = &rendering;
-    info.stageCount = static_cast<std::uint32_t>(stages.size());
-    info.pStages = stages.data();
-    info.pVertexInputState = &input;
-    info.pInputAssemblyState = &assembly;
-    info.pViewportState = &viewport;
-    info.pRasterizationState = &raster;
-    info.pMultisampleState = &samples;
-    info.pDepthStencilState = &depth;
-    info.pColorBlendState = &colour;
-    info.pDynamicState = &dynamic;
-    info.layout = desc.layout;
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    check(vkCreateGraphicsPipelines(device.handle(), device.pipelineCache(), 1, &info, nullptr, &pipeline),
-          "creating a graphics pipeline");
-    return {device.handle(), pipeline};
+    if (desc.fragmentSpirv.empty()) return makeWithStages(device, desc, stages);
+    const ShaderModule fragment(device, desc.fragmentSpirv);
+    stages.push_back(stageInfo(VK_SHADER_STAGE_FRAGMENT_BIT, fragment.handle));
+    return makeWithStages(device, desc, stages);
 }
 
 Pipeline makeComputePipeline(const Device& device, std::span<const std::uint32_t> spirv, VkPipelineLayout layout,

@@ -9,7 +9,10 @@ layout(set = 0, binding = 2, std430) readonly buffer Extras { uint extras[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Indices { uint indices[]; };
 layout(set = 0, binding = 4, std430) readonly buffer DrawItems { GpuDrawItem drawItems[]; };
 
-vec3 pullPosition(uint vertex) { return vec3(positions[3u * vertex], positions[3u * vertex + 1u], positions[3u * vertex + 2u]); }
+vec3 pullPosition(uint vertex) {
+    const uint at = 3u * vertex;
+    return vec3(positions[at], positions[at + 1u], positions[at + 2u]);
+}
 
 vec3 transformPoint(GpuDrawItem item, vec3 p) {
     const vec4 h = vec4(p, 1.0);
@@ -41,7 +44,8 @@ vec2 pullTexcoord(GpuDrawItem item, uint vertex, uint set) {
         const uint at = (vertex + item.extraOffset) * kExtraWords;
         return vec2(uintBitsToFloat(extras[at]), uintBitsToFloat(extras[at + 1u]));
     }
-    return vec2(uintBitsToFloat(attributes[vertex * kAttributeWords + 2u]), uintBitsToFloat(attributes[vertex * kAttributeWords + 3u]));
+    const uint at = vertex * kAttributeWords;
+    return vec2(uintBitsToFloat(attributes[at + 2u]), uintBitsToFloat(attributes[at + 3u]));
 }
 vec4 pullColour(GpuDrawItem item, uint vertex) {
     if ((item.flags & kItemExtrasBit) == 0u) return vec4(1.0);

@@ -26,8 +26,8 @@ vec3 eyeDirection(Receiver receiver) {
 // Alpha 0 says that no geometry is there.
 void writeBackground(uvec2 pixel) {
     vec2 xy = (vec2(pixel) + 0.5) * frame.viewXyFromPixel.xy + frame.viewXyFromPixel.zw;
-    vec3 direction = isOrthographic() ? frame.axisZWs.xyz
-                                      : normalize(frame.axisXWs.xyz * xy.x + frame.axisYWs.xyz * xy.y + frame.axisZWs.xyz);
+    vec3 direction = frame.axisZWs.xyz;
+    if (!isOrthographic()) direction = normalize(frame.axisXWs.xyz * xy.x + frame.axisYWs.xyz * xy.y + direction);
     imageStore(picture, ivec2(pixel), vec4(backgroundRadiance(direction), 0.0));
 }
 

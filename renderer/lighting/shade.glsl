@@ -1,7 +1,7 @@
 // Physically based shading: metallic-roughness with a GGX lobe, punctual lights, ambient light of two colours.
 //
-// Source: Khronos glTF 2.0 specification, appendix B (BRDF) and KHR_lights_punctual (attenuation); Walter et al. 2007 for
-// the GGX distribution, Heitz 2014 for its height-correlated masking, Schlick 1994 for Fresnel.
+// Source: Khronos glTF 2.0 specification, appendix B (BRDF) and KHR_lights_punctual (attenuation); Walter et al. 2007
+// for the GGX distribution, Heitz 2014 for its height-correlated masking, Schlick 1994 for Fresnel.
 #ifndef GNOMON_RENDERER_SHADE_GLSL
 #define GNOMON_RENDERER_SHADE_GLSL
 

@@ -6,5 +6,8 @@ layout(set = 0, binding = 1, std430) restrict writeonly buffer Target { uvec4 ta
 
 void main() {
     uint lanes = gl_NumWorkGroups.x * 256u;
-    for (uint i = 0u; i < 4u; ++i) target[i * lanes + gl_GlobalInvocationID.x] = source[i * lanes + gl_GlobalInvocationID.x];
+    for (uint i = 0u; i < 4u; ++i) {
+        uint at = i * lanes + gl_GlobalInvocationID.x;
+        target[at] = source[at];
+    }
 }

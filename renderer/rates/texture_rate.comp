@@ -1,6 +1,6 @@
 #version 460
-// Samples a shadow atlas as the filters do, with next to no arithmetic around it: how many samples a device can take when
-// all of them are in its texture caches. Every work group stays within a block of 32x32 texels.
+// Samples a shadow atlas as the filters do, with next to no arithmetic around it: how many samples a device can take
+// when all of them are in its texture caches. Every work group stays within a block of 32x32 texels.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "vulkan/work_group.glsl"

@@ -8,8 +8,8 @@
 // Here: device depth is affine in a texel's position along any plane, with perspective (A + B / z, and 1 / z is affine)
 // as without. So one depth and one slope per pixel give the plane's depth at every texel's centre: what the rasterizer
 // stored there, if nothing is nearer.
-// Limits: the slope of faces that are nearly edge-on to the light is cut at kLeastCosine (1.1 degrees). What lies in the
-// map is the surface as the rasterizer snapped it, 2^-4 (SwiftShader) to 2^-8 texels aside, hence the slack by slope.
+// Limits: the slope of faces that are nearly edge-on to the light is cut at kLeastCosine (1.1 degrees). The map
+// holds the surface as the rasterizer snapped it, 2^-4 (SwiftShader) to 2^-8 texels aside, hence the slack by slope.
 #ifndef GNOMON_DEPTH_BIAS_DEPTH_BIAS_GLSL
 #define GNOMON_DEPTH_BIAS_DEPTH_BIAS_GLSL
 
@@ -50,8 +50,8 @@ float linearBias(GpuLight light, Receiver receiver) {
 }
 
 // What float rounding may make of a device depth, in the map and here: 16 steps of its terms, and the rasterizer's
-// snapping. With reversed Z the first is 20 micrometres at 20 m; with standard Z and a near plane of 5 cm, 16 mm, and no
-// smaller bias could hold there.
+// snapping. With reversed Z the first is 20 micrometres at 20 m; with standard Z and a near plane of 5 cm, 16 mm, and
+// no smaller bias could hold there.
 float deviceDepthSlack(GpuShadowView view, float depth, vec2 slope) {
     precise float rounding = 1e-6 * (abs(view.depthFromLinearA) + abs(depth - view.depthFromLinearA));
     precise float slack = rounding + kSnapPx * (abs(slope.x) + abs(slope.y));

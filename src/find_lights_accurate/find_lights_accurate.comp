@@ -5,15 +5,15 @@
 // would cost a full shadow evaluation in phase 4.
 // Source: the paper, section 2.3, listing 3, corrected (the packed word of entry e is e / 3).
 // Plain way: one lane per pixel, a vote and a list append per light.
-// Here: first the work group tests 64 lights at a time, one per lane, against the tile's own froxel, as phase 2 did: most
-// lights of the group's mask are its other tiles'. The few that are left are tested per pixel. Every lane collects a word
-// of 32 answers, a subgroup ORs them, and subgroups meet in shared memory once per word instead of once per light. The
-// list is written at the end by all lanes from the 32 words: ascending light index, so its order never depends on the
-// order of execution.
-// Memory safety: with the paper's reservation the space is the tile's approximate count. Lights that the tile's own mask,
-// zBins and froxel reject are skipped, the froxel tests are conservative against lightReaches(), and a tile that still
-// exceeded its space would be marked as one without list space, so that no light is lost; a counter records it and must
-// stay 0.
+// Here: first the work group tests 64 lights at a time, one per lane, against the tile's own froxel, as phase 2 did:
+// most lights of the group's mask are its other tiles'. The few that are left are tested per pixel. Every lane collects
+// a word of 32 answers, a subgroup ORs them, and subgroups meet in shared memory once per word instead of once per
+// light. The list is written at the end by all lanes from the 32 words: ascending light index, so its order never
+// depends on the order of execution.
+// Memory safety: with the paper's reservation the space is the tile's approximate count. Lights that the tile's own
+// mask, zBins and froxel reject are skipped, the froxel tests are conservative against lightReaches(), and a tile that
+// still exceeded its space would be marked as one without list space, so that no light is lost; a counter records it
+// and must stay 0.
 #extension GL_GOOGLE_include_directive : require
 #define GNOMON_LISTS_ACCESS
 #include "vulkan/work_group.glsl"

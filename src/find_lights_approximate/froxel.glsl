@@ -4,8 +4,8 @@
 // and never one that does: phase 3 writes into the space that is reserved from these answers.
 // Source: the paper, section 2.2 (three tests); Wronski 2017, "Cull that cone!".
 // Floats: every comparison gives way by `margin`, which bounds the rounding of both this test and the per-pixel test
-// (positions of up to frame.zBins.w metres). The per-pixel test compares cosines, whose rounding widens narrow cones the
-// most, so cones are taken a little wider here.
+// (positions of up to frame.zBins.w metres). The per-pixel test compares cosines, whose rounding widens narrow cones
+// the most, so cones are taken a little wider here.
 #ifndef GNOMON_FIND_LIGHTS_APPROXIMATE_FROXEL_GLSL
 #define GNOMON_FIND_LIGHTS_APPROXIMATE_FROXEL_GLSL
 

@@ -2,7 +2,7 @@
 // Phase 4, Generate Deferred Shadows: the visibility of every light of the early list from every pixel of a tile.
 //
 // Problem: evaluating shadows inside the lighting shader keeps its registers and the filter's alive together.
-// Source: the paper, section 2.4, listing 4. Wholly dark: nothing is written. Wholly lit: a flag. Else a slot of 64 bytes.
+// Source: the paper, section 2.4, listing 4. Wholly dark: nothing is written. Wholly lit: a flag. Else a slot.
 // Plain way: light after light, two votes, one slot allocation and a byte store each.
 // Here: four lights at a time (eight with slots of 4 bits). A lane's visibilities of them form one word; AND and OR of
 // those words over the tile are the votes; one atomic takes all slots of the batch; and since a batch's slots are 64

@@ -48,8 +48,8 @@ float linearDepthOf(GpuShadowView view, vec4 clip) {
 }
 
 float deviceDepthOf(GpuShadowView view, float linear) {
-    precise float depth = view.depthFromLinearA + (isOrthographicView(view) ? view.depthFromLinearB * linear
-                                                                            : view.depthFromLinearB / max(linear, 1e-4));
+    float b = view.depthFromLinearB;
+    precise float depth = view.depthFromLinearA + (isOrthographicView(view) ? b * linear : b / max(linear, 1e-4));
     return depth;
 }
 

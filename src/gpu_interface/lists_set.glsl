@@ -14,13 +14,16 @@
 #ifndef GNOMON_LISTS_ACCESS
 #define GNOMON_LISTS_ACCESS readonly
 #endif
-#define GNOMON_LISTS_BUFFER(number, access) layout(set = GNOMON_LISTS_SET, binding = number, std430) restrict access buffer
+#define GNOMON_LISTS_BUFFER(number, access) \
+    layout(set = GNOMON_LISTS_SET, binding = number, std430) restrict access buffer
 
 layout(set = GNOMON_LISTS_SET, binding = kBindFrame, std140) uniform FrameBlock { GpuFrame frame; };
 GNOMON_LISTS_BUFFER(kBindLights, readonly) LightsBlock { GpuLight lights[]; };
 GNOMON_LISTS_BUFFER(kBindZBins, readonly) ZBinsBlock { uint zBins[]; };
 GNOMON_LISTS_BUFFER(kBindTileLightMasks, readonly) TileLightMasksBlock { uint tileLightMasks[]; };
-GNOMON_LISTS_BUFFER(kBindTileGroupLightMasks, GNOMON_LISTS_ACCESS) TileGroupLightMasksBlock { uint tileGroupLightMasks[]; };
+GNOMON_LISTS_BUFFER(kBindTileGroupLightMasks, GNOMON_LISTS_ACCESS) TileGroupLightMasksBlock {
+    uint tileGroupLightMasks[];
+};
 GNOMON_LISTS_BUFFER(kBindTileDepthRanges, GNOMON_LISTS_ACCESS) TileDepthRangesBlock { vec2 tileDepthRanges[]; };
 GNOMON_LISTS_BUFFER(kBindTileLightSlotIds, GNOMON_LISTS_ACCESS) TileLightSlotIdsBlock { uint tileLightSlotIds[]; };
 GNOMON_LISTS_BUFFER(kBindApproximateCounts, GNOMON_LISTS_ACCESS) ApproximateCountsBlock { uint approximateCounts[]; };

@@ -36,7 +36,9 @@ GNOMON_FN uint finalSlotOrFlag(uint entry) { return entry >> kLightIndexBits; }
 
 // Entry of a block of the shadow bounds. Levels lie behind each other, each a quarter of the one before: the finest has
 // `blocks` blocks, so level l begins at blocks (1 + 1/4 + ...) = 4 (blocks - blocks / 4^l) / 3.
-GNOMON_FN uint shadowBoundsLevelOffset(uint blocks, uint level) { return (blocks - (blocks >> (2u * level))) / 3u * 4u; }
+GNOMON_FN uint shadowBoundsLevelOffset(uint blocks, uint level) {
+    return (blocks - (blocks >> (2u * level))) / 3u * 4u;
+}
 
 // A slot of 64 pixels with 8 or 4 bits each: 16 or 8 words.
 GNOMON_FN uint visibilitySlotWords(uint bits) { return kWorkGroupSize * bits / 32u; }

@@ -2,8 +2,8 @@
 // Hierarchical depth: least and greatest view depth of every 8x8 shadow tile.
 //
 // Source: the paper, section 2.2 and its footnote 1: the greatest depth leaves out background, which would otherwise
-// make every tile at a silhouette reach to the end of the world. A tile of background alone gets min = +inf, max = -inf,
-// and no lights. One work group per tile, one lane per pixel.
+// make every tile at a silhouette reach to the end of the world. A tile of background alone gets min = +inf,
+// max = -inf, and no lights. One work group per tile, one lane per pixel.
 //
 // With a host's own pyramid (kHostDepthPyramid) one lane converts one tile. Such a pyramid may include background; the
 // range is then merely longer: endless, since dividing by a standard infinite projection's zero could give either sign.

@@ -1,7 +1,7 @@
 #version 460
 // Shadow Bounds: the least and the greatest depth of every block of the shadow atlases, from 16x16 to 256x256 texels.
 //
-// Problem: most pixels are wholly lit or wholly dark, and a search for blockers takes many texture reads to find that out.
+// Problem: most pixels are wholly lit or wholly dark, and a search for blockers takes many texture reads to find out.
 // Source: the min/max shadowmaps of Dmitriev and Uralsky 2007, "Soft Shadows Using Hierarchical Min-Max Shadow Maps".
 // Plain way: one pass per level over whole atlases.
 // Here: one work group makes all five levels of one cell of 256x256 texels, and only cells that a changed view touches

@@ -13,7 +13,7 @@ layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
 layout(constant_id = 0) const uint kSubgroupSize = 32;
 const uint kSubgroupCount = kWorkGroupSize / kSubgroupSize;
 
-// Pipelines ask for full subgroups of kSubgroupSize lanes, so this numbers the 64 lanes whatever the device's own order.
+// Pipelines ask for full subgroups of kSubgroupSize lanes, so this numbers the 64 lanes whatever the device's order.
 uint laneIndex() { return gl_SubgroupID * kSubgroupSize + gl_SubgroupInvocationID; }
 uvec2 laneCoordinates(uint lane) { return uvec2(mortonX(lane), mortonY(lane)); }
 

@@ -160,11 +160,11 @@ TEST_F(Program, WrongCamerasAndDevicesAreRefused) {
 
 TEST_F(Program, OutputsThatCannotBeWrittenAreFoundFirst) {
     for (const char* option : {"-o", "--exr", "--stats"}) {
-        expectRefused(std::string("render ") + option + " missing/out", 1);
-        expectRefused(std::string("render ") + option + " /dev/null", 1);
-        expectRefused(std::string("render ") + option + " .", 1);
+        expectRefused(std::string("render ") + option + " missing/out", 2);
+        expectRefused(std::string("render ") + option + " /dev/null", 2);
+        expectRefused(std::string("render ") + option + " .", 2);
     }
-    expectRefused("bench --json missing/out.json", 1);
+    expectRefused("bench --json missing/out.json", 2);
 }
 
 TEST_F(Program, OutputsAreFilesOfTheirOwn) {

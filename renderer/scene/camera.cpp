@@ -57,8 +57,7 @@ Result cameraByIndex(std::string_view text, const Scene& scene, SceneCamera& cam
     return {};
 }
 
-// The least distance from the centre, against `toEye`, at which every corner of the box is in a picture of 4:3 or
-// wider.
+// The least distance from the centre, against `toEye`, at which the whole box is in a picture of 4:3 or wider.
 float framingDistance(const Bounds& bounds, const glm::vec3& toEye, float verticalFieldOfView) {
     constexpr float kMargin = 1.08f;
     constexpr float kNarrowestAspect = 4.0f / 3.0f;

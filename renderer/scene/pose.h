@@ -20,8 +20,8 @@ inline constexpr double kAnchorGridMetres = 1024.0;
 /// From any origin; beyond, squared lengths overflow a float.
 inline constexpr float kFarthestUnits = 1.0e15f;
 
-/// What light or camera may be out from the origin along any axis: beyond it floats are coarser than anything a picture
-/// could show, and no frame's origin helps.
+/// How far a light or camera may be from the origin along any axis: floats farther out are coarser than anything a
+/// picture could show, and no frame's origin helps.
 inline constexpr float kFarthestMetres = 1.0e8f;
 
 /// Vertices of one primitive of one instance, in the space of Pose::worldFromObject. Same counts as the primitive's.

@@ -1,8 +1,8 @@
 // The visibility of a light from a pixel, quantised: the one function behind slots, EVALUATE and inline shadows.
 //
 // Problem: a frame must not depend on which pair got a slot and which is evaluated while lighting.
-// What we do: every evaluation, wherever it happens, returns the value that a slot can hold, and everything before it is
-// precise, so that different pipelines compute the same bits. They are perceptual: q = round(255 * sqrt(v)), or 15.
+// What we do: every evaluation, wherever it happens, returns the value that a slot can hold, and everything before it
+// is precise, so that different pipelines compute the same bits. They are perceptual: q = round(255 * sqrt(v)), or 15.
 // A host's own provider: -DGNOMON_HOST_PROVIDER and, on the include path, gnomon_host_provider.glsl, which defines
 //     float hostVisibility(GpuLight light, Receiver receiver, vec3 toLight);   // 0 dark to 1 lit
 #ifndef GNOMON_GENERATE_SHADOWS_VISIBILITY_GLSL

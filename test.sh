@@ -39,7 +39,8 @@ step "Vulkan devices"
 build/sanitize/bin/gnomon devices
 
 step "Testing"
-ctest --test-dir build/sanitize --output-on-failure
+# Two programs at a time: software devices compile shaders on one core, and that is most of what the image tests wait for.
+ctest --test-dir build/sanitize --output-on-failure --parallel 2
 log=build/sanitize/Testing/Temporary/LastTest.log
 if grep -qE '^(without validation|skipped:? validation)' "$log"; then
     echo "Some tests found no validation layer, so they prove less than they should." >&2

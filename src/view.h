@@ -54,7 +54,6 @@ struct View::State {
     std::unique_ptr<Prepare> prepare;
     DeviceBuffer device[gpu::kListsBindingCount];  // those that are not per frame, by binding
     DeviceBuffer shadowBounds;
-    std::uint32_t boundsCellCapacity = 0;
     ShadowBoundsCells boundsCells;
     DeviceImage noFaceNormals;  // stand in for what the host does not have
     DeviceImage noAtlas;

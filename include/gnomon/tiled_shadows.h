@@ -162,8 +162,8 @@ struct FrameDesc {
     ViewInput view;
     std::span<const ShadowView> shadowViews;
     HostImage depth;  ///< D32, D24 or D16 aspect view, 2D
-    HostImage
-        faceNormals;  ///< optional: R16G16_UINT, octahedral, the side the camera sees (src/shading/octahedral.glsl)
+    /// Optional: R16G16_UINT, octahedral, the side the camera sees (src/shading/octahedral.glsl).
+    HostImage faceNormals;
     HostImage receiverFlags;  ///< optional: R8G8_UINT: receiver mask; bit 0: subsurface
     /// With ContextDesc::hostDepthPyramid: R32G32_SFLOAT, min and max device depth per tile; texel (0, 0) is the first
     /// tile of the active viewport.
@@ -188,7 +188,7 @@ struct FrameStatistics {
     std::uint32_t slotOverflowEntries = 0;
     std::uint32_t accurateExceedsApproximate = 0;  ///< must be 0
     std::uint32_t evaluateTiles = 0;               ///< shaded by the second lighting pipeline
-    std::uint32_t recommendedListEntries = 0;      ///< capacities with which this frame would not have overflowed;
+    std::uint32_t recommendedListEntries = 0;      ///< capacities with which this frame would not have overflowed
     std::uint32_t recommendedVisibilitySlots = 0;  ///< where lists overflow: without `statistics` a lower bound
     // Only with ViewDesc::statistics:
     std::uint32_t tilesWithGeometry = 0;
@@ -222,8 +222,8 @@ public:
     Result beginFrame(const FrameDesc& frame, PrepareReport* report = nullptr) noexcept;
 
     // Each records one pass with its barriers, debug label and timestamps, and leaves its own compute pipeline and
-    // descriptor sets 0 to 2 bound. Before and after, the library's buffers need
-    // no barrier by the host as long as everything runs on one queue. Across queues a semaphore is enough; since the
+    // descriptor sets 0 to 2 bound. Before and after, the library's buffers need no barrier by the host as long as
+    // everything runs on one queue. Across queues a semaphore is enough; since the
     // lists exist once per view, the next frame's recordHierarchicalDepth() must wait for this frame's
     // recordEndFrame().
     void recordHierarchicalDepth(VkCommandBuffer commands) noexcept;

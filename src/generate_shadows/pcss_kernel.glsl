@@ -113,7 +113,7 @@ bool mayLeave(ShadowPoint s, PcssKernel k, float radius) {
 
 #include "generate_shadows/point_faces.glsl"
 
-// The receiver's plane and the map at the four texels around `corner`, which is a place less half a texel.
+// The receiver's plane at the 2x2 texels whose first one is `first`, in the order of textureGather.
 vec4 planeDepthsAt(PcssKernel k, vec2 first) {
     precise vec2 away = first - k.corner;
     precise float depth = fma(k.slope.x, away.x, fma(k.slope.y, away.y, k.depth));

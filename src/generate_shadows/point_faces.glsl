@@ -1,4 +1,4 @@
-// Taps of a soft shadow that leave their face of a point light. Included by pcss.glsl, which has the kernel.
+// Taps of a soft shadow that leave their face of a point light. Included by pcss_kernel.glsl, whose kernel it uses.
 
 bool leavesFace(ShadowPoint s, PcssKernel k, vec2 corner) {
     return k.cube && (any(lessThan(corner, s.rectMin + 0.5)) || any(greaterThan(corner, s.rectMax - 1.5)));

@@ -13,8 +13,14 @@
 #define GNOMON_LISTS_ACCESS
 #include "vulkan/work_group.glsl"
 #include "generate_shadows/visibility.glsl"
-#include "generate_shadows/batch.glsl"
 
+// The lights that are evaluated together: four, or eight with slots of 4 bits; one field of a word each.
+const uint kBits = kVisibilityBits;
+const uint kBatch = 32u / kBits;  // lights, and pixels in a word of a slot
+const uint kLevels = kVisibilityLevels;
+const uint kSlotWords = kVisibilitySlotWords;
+
+shared uint packedVisibility[kWorkGroupSize];  // per lane, a field per light
 shared uint subgroupLit[kSubgroupCount];
 shared uint subgroupDark[kSubgroupCount];
 shared uint batchSlot;
@@ -24,6 +30,24 @@ void appendEvaluateTile(uvec2 tile) {
     if (i >= frame.tileCounts.x * frame.tileCounts.y) return;
     evaluateTiles[i] = tile.y << 16u | tile.x;
     atomicMax(evaluateHead.groupCountY, i / kEvaluateRowTiles + 1u);
+}
+
+uint earlyLight(uint slotId, uint entry) {
+    return unpackEarlyIndex(earlyList[earlyWordIndex(slotId, entry)], entry);
+}
+
+// `voting`: fields of the lights that reach this lane's pixel. Others do not vote on all lit or all dark.
+void evaluateBatch(Receiver receiver, uint slotId, uint first, uint count, out uint stored, out uint voting) {
+    stored = 0u;
+    voting = 0u;
+    for (uint i = 0u; i < count; ++i) {
+        GpuLight light = lights[earlyLight(slotId, first + i)];
+        vec3 toLight;
+        if (receiver.valid && lightReaches(light, receiver.positionWs, receiver.mask, toLight)) {
+            stored |= quantiseVisibility(evaluateVisibility(light, receiver, toLight)) << (kBits * i);
+            voting |= kLevels << (kBits * i);
+        }
+    }
 }
 
 void combineVotes(inout uint lit, inout uint dark) {

@@ -73,26 +73,15 @@ float shadowFadeOf(GpuLight light, Receiver receiver) {
     return clamp(fade, 0.0, 1.0);
 }
 
-float fadedVisibility(GpuLight light, Receiver receiver, float visibility) {
-    precise float faded = 1.0 - shadowFadeOf(light, receiver) * (1.0 - visibility);
-    return faded;
-}
-
-// Whether a shadowmap must be asked; else `visibility`, unfaded, is known.
-bool needsShadowmap(GpuLight light, Receiver receiver, vec3 toLight, out float visibility) {
-    visibility = 1.0;
-    if (!lightCasts(light) || kProvider == kProviderOff) return false;
-    visibility = 0.0;
-    return receiver.subsurface || facesLight(receiver.faceNormalWs, toLight);
-}
-
 // Unquantised; for a pixel that the light reaches.
 float evaluateVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
-    float visibility;
-    if (needsShadowmap(light, receiver, toLight, visibility)) {
+    if (!lightCasts(light) || kProvider == kProviderOff) return 1.0;
+    precise float visibility = 0.0;
+    if (receiver.subsurface || facesLight(receiver.faceNormalWs, toLight)) {
         visibility = providerVisibility(light, receiver, toLight);
     }
-    return lightCasts(light) ? fadedVisibility(light, receiver, visibility) : 1.0;
+    precise float faded = 1.0 - shadowFadeOf(light, receiver) * (1.0 - visibility);
+    return faded;
 }
 
 uint quantiseVisibility(float visibility) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <string_view>
 
 #include "app/errors.h"
@@ -13,6 +14,10 @@ namespace gnomon::app {
 namespace {
 
 constexpr std::uint32_t kMostPoolEntries = 1u << 30;
+// The paper's footnote 3.
+constexpr renderer::HardwareBias kPaperBias = {.slopeFactor = 1.0f};
+// With 32-bit reversed Z about 0.04 % of the distance to the light, and twice the triangle's slope.
+constexpr renderer::HardwareBias kTypicalHardwareBias = {.constantFactor = 4096.0f, .slopeFactor = 2.0f};
 
 // All of `text` as a number from 1 to `most`; 0 otherwise.
 std::uint32_t positiveInteger(std::string_view text, std::uint32_t most) {
@@ -37,6 +42,26 @@ PcssTaps parseTaps(const std::string& text) {
             fmt::format("'{}' are no taps: give low, medium, high or SEARCH,FILTER as in 16,24, each from 1 to {}.",
                         text, gpu::kMaxPcssTaps));
     return taps;
+}
+
+// CONSTANT,SLOPE or CONSTANT,SLOPE,CLAMP.
+renderer::HardwareBias parseHardwareBias(const std::string& text) {
+    float values[3] = {};
+    const char *at = text.data(), *const end = at + text.size();
+    std::size_t count = 0;
+    bool good = !text.empty();
+    while (good && count < 3) {
+        const auto [next, error] = std::from_chars(at, end, values[count]);
+        good = error == std::errc() && std::abs(values[count]) <= 1e9f;
+        ++count;
+        at = next;
+        if (!good || at == end) break;
+        good = *at++ == ',' && at != end;
+    }
+    if (!good || at != end || count < 2)
+        throw UsageError(fmt::format(
+            "'{}' is no hardware bias: give CONSTANT,SLOPE or CONSTANT,SLOPE,CLAMP as in 4096,2 or 0,1,0.01.", text));
+    return {values[0], values[1], values[2]};
 }
 
 void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
@@ -100,6 +125,26 @@ void addSettings(CLI::App& command, Settings& s) {
     command.add_option("--visibility-bits", s.visibilityBits, "Bits of a pixel's visibility in a slot")
         ->check(CLI::IsMember({4, 8}))
         ->capture_default_str();
+    command
+        .add_option("--bias", s.bias,
+                    "Depth bias: oriented; paper (its listing 7, maps drawn with slope factor 1); hardware (maps drawn "
+                    "with factors 4096 and 2); none")
+        ->check(CLI::IsMember({"oriented", "paper", "hardware", "none"}))
+        ->capture_default_str();
+    command.add_option("--hardware-bias", s.hardwareBias,
+                       "CONSTANT,SLOPE[,CLAMP] to draw shadowmaps with, in place of what --bias has");
+    command.add_option("--bias-metres", s.biasMetres, "Oriented bias of lights that state none")
+        ->check(numberWithin(0.0, 1000.0))
+        ->capture_default_str();
+    command.add_flag("--subsurface-fronts", s.subsurfaceFronts,
+                     "Draw subsurface casters with the faces that look at the light, and bias subsurface pixels by "
+                     "--subsurface-bias");
+    command.add_option("--subsurface-bias", s.subsurfaceBiasMetres, "Metres, with --subsurface-fronts")
+        ->check(numberWithin(0.0, 1000.0))
+        ->capture_default_str();
+    command.add_option("--face-normals", s.faceNormals, "From the G-buffer, or derived from its depth")
+        ->check(CLI::IsMember({"stored", "derived"}))
+        ->capture_default_str();
     command.add_option("--device", s.device, "Index or part of the name of a Vulkan device (see: gnomon devices)");
     command.add_flag("--validate", s.validate, "Run under the validation layers; any message is a failure");
     command.add_flag_callback("--quiet", silenceProgress, "No progress on stderr");
@@ -120,6 +165,16 @@ void addSettings(CLI::App& command, Settings& s) {
     command.add_flag("--unquantised", s.unquantised, "Inline shadows without the 8 bits of a visibility slot");
 }
 
+void setBias(const std::string& name, renderer::RendererDesc& desc) {
+    desc.depthBias = name == "oriented" ? DepthBias::Oriented
+                     : name == "paper"  ? DepthBias::OrientedConstant
+                                        : DepthBias::Unbiased;
+    desc.facedAwayIsDark = name != "paper";
+    desc.shadowDrawing.bias = name == "paper"      ? kPaperBias
+                              : name == "hardware" ? kTypicalHardwareBias
+                                                   : renderer::HardwareBias{};
+}
+
 renderer::RendererDesc rendererDescOf(const Settings& s) {
     renderer::RendererDesc desc;
     parseSize(s.size, desc.widthPx, desc.heightPx);
@@ -129,6 +184,12 @@ renderer::RendererDesc rendererDescOf(const Settings& s) {
     desc.patternPerFrame = s.patternPerFrame;
     desc.visibilityBits = s.visibilityBits;
     desc.shadowBounds = !s.noShadowBounds && desc.filter == Filter::Pcss;
+    setBias(s.bias, desc);
+    if (!s.hardwareBias.empty()) desc.shadowDrawing.bias = parseHardwareBias(s.hardwareBias);
+    desc.shadowDrawing.subsurfaceFronts = s.subsurfaceFronts;
+    desc.biasMetres = s.biasMetres;
+    desc.subsurfaceBiasMetres = s.subsurfaceBiasMetres;
+    desc.readFaceNormals = s.faceNormals == "stored";
     desc.listReservation = s.reservation == "accurate" ? ListReservation::Accurate
                            : s.reservation == "fixed"  ? ListReservation::Fixed
                                                        : ListReservation::Approximate;

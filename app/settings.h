@@ -27,6 +27,11 @@ struct Settings {
     std::string taps = "medium";
     bool patternPerFrame = false;
     std::uint32_t visibilityBits = 8;
+    std::string bias = "oriented";
+    std::string hardwareBias;  // empty: as `bias` has it
+    float biasMetres = 0.002f, subsurfaceBiasMetres = 0.02f;
+    bool subsurfaceFronts = false;
+    std::string faceNormals = "stored";
     bool noShadowBounds = false;
     std::string device;
     bool validate = false;
@@ -47,6 +52,9 @@ CLI::Validator numberWithin(double low, double high);
 inline double frameTime(double firstSeconds, std::uint64_t frame, double framesPerSecond) {
     return framesPerSecond > 0.0 ? firstSeconds + static_cast<double>(frame) / framesPerSecond : firstSeconds;
 }
+
+/// Sets how depths are biased: "oriented", "paper", "hardware" or "none", each with its own way to draw.
+void setBias(const std::string& name, renderer::RendererDesc& desc);
 
 /// Throws UsageError on what no device could do.
 renderer::RendererDesc rendererDescOf(const Settings& settings);

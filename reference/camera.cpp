@@ -66,6 +66,15 @@ double viewDepth(const CameraModel& camera, Vec3 positionWs) {
     return camera.forwardSign * transformPoint(camera.viewFromWorld, positionWs).z;
 }
 
+double viewDepthPerDeviceDepth(const CameraModel& camera, double deviceDepth, double& errorShare) {
+    // The derivative of z = (d e - b) / (a - d c), as in viewDepthError().
+    const double a = camera.clipFromView.m[2][2], b = camera.clipFromView.m[2][3];
+    const double c = camera.clipFromView.m[3][2], e = camera.clipFromView.m[3][3];
+    const double denominator = std::abs(a - deviceDepth * c);
+    errorShare = kErrorFactor * kFloatRoundoff * (2.0 * (std::abs(a) + std::abs(deviceDepth * c)) / denominator + 4.0);
+    return std::abs(a * e - b * c) / (denominator * denominator);
+}
+
 PixelPosition pixelFromWorld(const CameraModel& camera, Vec3 positionWs) {
     const Vec4 clip = camera.clipFromWorld * Vec4{positionWs.x, positionWs.y, positionWs.z, 1.0};
     PixelPosition result;

@@ -46,6 +46,8 @@ Vec3 worldFromPixel(const CameraModel& camera, double xPx, double yPx, double de
 Vec3 worldAtViewDepth(const CameraModel& camera, double xPx, double yPx, double viewDepthMetres);
 
 double viewDepth(const CameraModel& camera, Vec3 positionWs);
+/// Metres of view depth per unit of device depth, without its sign, and the share by which floats may have it wrong.
+double viewDepthPerDeviceDepth(const CameraModel& camera, double deviceDepth, double& errorShare);
 
 struct PixelPosition {
     double xPx = 0, yPx = 0;

@@ -27,12 +27,17 @@ Facing facingOf(const LightModel& light, const Pixel& pixel) {
 }
 
 Visibility sampleView(const LightModel& light, std::size_t which, const Pixel& pixel, const ShadowInput& input,
-                      std::span<const DiskDirection> directions) {
+                      bool faces, std::span<const DiskDirection> directions) {
     const auto views = std::span(input.views).subspan(light.firstShadowView, light.viewCount());
     const ShadowViewModel& view = views[which];
     double bias = light.biasMetres;
-    if (pixel.subsurface) bias = std::max(bias, input.subsurfaceBiasMetres);
-    const ReceiverInView receiver = receiverIn(view, pixel, bias);
+    if (pixel.subsurface)
+        bias = std::max(bias, input.subsurfaceBiasMetres);
+    else if (!faces)
+        bias = -bias;
+    if (input.bias == BiasMode::Unbiased) bias = 0;
+    const DepthMode mode = input.bias == BiasMode::Oriented ? DepthMode::Plane : DepthMode::Constant;
+    const ReceiverInView receiver = receiverIn(view, pixel, mode, bias);
     if (receiver.unknown) return kAny;
     Visibility result = receiver.mayBeBehind ? kLit : kNone;
     for (const ReceiverPlane& plane : receiver.planes) {
@@ -74,26 +79,34 @@ std::vector<std::size_t> facesOf(const LightModel& light, const Pixel& pixel) {
     return result;
 }
 
+Visibility sampleLight(const LightModel& light, const Pixel& pixel, const ShadowInput& input, bool faces,
+                       std::span<const DiskDirection> directions) {
+    const auto sample = [&](std::size_t which) { return sampleView(light, which, pixel, input, faces, directions); };
+    if (light.type == LightType::Directional) {
+        const auto cascades = std::span(input.views).subspan(light.firstShadowView, light.viewCount());
+        return throughCascades(cascades, pixel, sample);
+    }
+    Visibility result = kNone;
+    for (const std::size_t face : facesOf(light, pixel)) result = merge(result, sample(face));
+    return result;
+}
+
 }  // namespace
 
 Visibility visibility(const LightModel& light, const Pixel& pixel, const ShadowInput& input) {
     if (!light.casts || light.firstShadowView == kNoShadowViews || input.filter == ShadowFilter::Off) return kLit;
-    if (!pixel.hasFaceNormal) return kAny;
+    if (!pixel.hasFaceNormal && (input.bias != BiasMode::Unbiased || input.facedAwayIsDark)) return kAny;
     const Facing facing = facingOf(light, pixel);
-    if (!pixel.subsurface && !facing.mayFace) return kDark;
+    const bool sampleAway = !input.facedAwayIsDark && !pixel.subsurface;
+    if (!pixel.subsurface && !facing.mayFace && !sampleAway) return kDark;
     std::vector<DiskDirection> directions;
     if (input.filter == ShadowFilter::Pcss)
         directions =
             diskDirections(pixel.x, pixel.y, input.patternTurn, std::max(input.pcssTaps.search, input.pcssTaps.filter));
-    const auto sample = [&](std::size_t which) { return sampleView(light, which, pixel, input, directions); };
     Visibility result = kNone;
-    if (light.type == LightType::Directional) {
-        const auto cascades = std::span(input.views).subspan(light.firstShadowView, light.viewCount());
-        result = throughCascades(cascades, pixel, sample);
-    } else {
-        for (const std::size_t face : facesOf(light, pixel)) result = merge(result, sample(face));
-    }
-    return facing.mayFaceAway && !pixel.subsurface ? merge(result, kDark) : result;
+    if (facing.mayFace || pixel.subsurface) result = sampleLight(light, pixel, input, true, directions);
+    if (!facing.mayFaceAway || pixel.subsurface) return result;
+    return merge(result, sampleAway ? sampleLight(light, pixel, input, false, directions) : kDark);
 }
 
 Interval shadowFadeAt(const LightModel& light, const Pixel& pixel) {

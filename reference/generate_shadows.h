@@ -36,6 +36,12 @@ namespace gnomon::reference {
 
 enum class ShadowFilter { Hard, Pcf, Off, Pcss };
 
+enum class BiasMode {
+    Oriented,          ///< as in 3.
+    OrientedConstant,  ///< one depth for all texels: a bias nearer to the light, or farther where c <= 0
+    Unbiased,          ///< one depth for all texels: that of p
+};
+
 struct ShadowInput {
     ShadowFilter filter = ShadowFilter::Pcf;
     int pcfRadius = 1;
@@ -43,6 +49,8 @@ struct ShadowInput {
     std::uint32_t patternTurn = 0;     ///< of the frame: 2^32 to a whole turn
     std::uint32_t visibilityBits = 8;  ///< 8 or 4
     double subsurfaceBiasMetres = 0.02;
+    BiasMode bias = BiasMode::Oriented;
+    bool facedAwayIsDark = true;  ///< else c <= 0 is sampled like the rest
     std::vector<ShadowViewModel> views;
     std::vector<AtlasCopy> atlases;
 

@@ -14,9 +14,9 @@ Interval3 normalOf(const Pixel& pixel) {
 }
 
 /// Device depth of the pixel itself, moved toward the light by the bias; the slack not yet.
-Interval biasedDepth(const ShadowViewModel& view, Interval linearDepth, double biasMetres) {
+Interval biasedDepth(const ShadowViewModel& view, Interval linearDepth, Interval biasMetres) {
     const Interval a = rounded(view.depth.a), b = rounded(view.depth.b);
-    const Interval nearer = linearDepth - rounded(biasMetres);
+    const Interval nearer = linearDepth - biasMetres;
     if (view.orthographic) return a + b * nearer;
     return a + b / max(nearer, kNearestLinearDepth);
 }
@@ -31,7 +31,7 @@ std::vector<Interval> tilted(Interval k, Interval least) {
 
 }  // namespace
 
-ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, double biasMetres) {
+ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, DepthMode mode, double biasMetres) {
     ReceiverInView result;
     const ShadowPosition at = project(view, pixel.position, pixel.positionError);
     if (!view.orthographic) {
@@ -53,6 +53,12 @@ ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, doubl
         plane.ray = squareRoot(1.0 + plane.tangentX * plane.tangentX + plane.tangentY * plane.tangentY);
     }
 
+    if (mode == DepthMode::Constant) {
+        plane.slopeX = plane.slopeY = 0.0;
+        plane.depth = biasedDepth(view, plane.linearDepth, rounded(biasMetres));
+        result.planes.push_back(plane);
+        return result;
+    }
     const Interval a = rounded(view.depth.a), b = rounded(view.depth.b);
     const Interval3 r0(rowOf(view.clipFromWorld, 0)), r1(rowOf(view.clipFromWorld, 1));
     const Interval3 axis = view.orthographic ? Interval3(rowOf(view.clipFromWorld, 2)) * (Interval(1.0) / b)
@@ -61,14 +67,16 @@ ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, doubl
     const Interval alpha = dot(normal, cross(r1, axis)), beta = dot(normal, cross(axis, r0));
     const Interval gamma = dot(normal, across);
     const Interval k = view.orthographic ? gamma : dot({alpha, beta, gamma}, {ndcX, ndcY, 1.0});
-    const Interval least = kLeastCosine * squareRoot(dot(across, across)) * plane.ray;
-    const Interval depth = biasedDepth(view, plane.linearDepth, biasMetres);
+    const Interval area = squareRoot(dot(across, across)), least = kLeastCosine * area * plane.ray;
+    const double toward = biasMetres < 0 ? -1 : 1;
     for (const Interval tilt : tilted(k, least)) {
+        const Interval offPlane = within(pixel.offPlaneMetres, pixel.offPlaneError) * area / abs(tilt);
+        const Interval depth = biasedDepth(view, plane.linearDepth, rounded(biasMetres) + offPlane * toward);
         const Interval perNdc = view.orthographic ? -(b / tilt) : b / (plane.linearDepth * tilt);
         plane.slopeX = perNdc * alpha / scaleX;
         plane.slopeY = perNdc * beta / scaleY;
         const Interval slack = 1e-6 * (abs(a) + abs(depth - a)) + (abs(plane.slopeX) + abs(plane.slopeY)) * (1.0 / 16);
-        plane.depth = view.reversed ? depth + slack : depth - slack;
+        plane.depth = depth + slack * (view.reversed ? toward : -toward);
         result.planes.push_back(plane);
     }
     return result;

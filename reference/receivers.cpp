@@ -10,6 +10,19 @@ double signNotZero(double value) {
     return value >= 0.0 ? 1.0 : -1.0;
 }
 
+// A step of the depth image is 2^-23 of a float's value, and its own where it has fewer bits. Along the pixel's ray
+// that is a step of the position, and of it counts what crosses the face.
+void findOffPlane(const CameraModel& camera, double deviceDepth, double depthStep, Pixel& pixel) {
+    double share = 0;
+    const double metres = viewDepthPerDeviceDepth(camera, deviceDepth, share) * (1.2e-7 * deviceDepth + depthStep);
+    const Vec3 ray = camera.orthographic ? camera.forward : (pixel.position - camera.eye) / pixel.viewDepth;
+    const double rayError =
+        8 * kFloatRoundoff + (camera.orthographic ? 0.0 : 2 * pixel.positionError / pixel.viewDepth);
+    const double cosine = std::abs(dot(pixel.faceNormal, ray));
+    pixel.offPlaneMetres = metres * cosine;
+    pixel.offPlaneError = metres * (rayError + cosine * share) * (1 + share);
+}
+
 std::uint16_t store16(double e) {
     return static_cast<std::uint16_t>(std::lround(std::clamp(e * 0.5 + 0.5, 0.0, 1.0) * 65535.0));
 }
@@ -76,6 +89,7 @@ PixelGrid makePixelGrid(const CameraModel& camera, const Receivers& receivers) {
             pixel.viewDepthError = viewDepthError(camera, depth);
             pixel.positionError = positionError(camera, pixel.position, depth);
             pixel.eyeDistance = length(pixel.position - camera.eye);
+            if (pixel.hasFaceNormal) findOffPlane(camera, static_cast<double>(depth), receivers.depthStep, pixel);
             pixel.eyeDistanceError =
                 pixel.positionError + kErrorFactor * kFloatRoundoff * (pixel.eyeDistance + sumOfMagnitudes(camera.eye));
         }

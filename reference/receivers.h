@@ -20,6 +20,7 @@ namespace gnomon::reference {
 struct Receivers {
     std::uint32_t widthPx = 0, heightPx = 0;
     std::vector<float> depth;                 ///< device depth, one per pixel
+    double depthStep = 0;                     ///< between neighbouring values of the depth image, beyond float rounding
     std::vector<std::uint16_t> faceNormals;   ///< R16G16_UINT octahedral, two per pixel; empty: the host has none
     std::vector<std::uint8_t> receiverFlags;  ///< R8G8_UINT: mask, bits; two per pixel; empty: mask 0xFF, no subsurface
 };
@@ -39,7 +40,9 @@ struct Pixel {
     double eyeDistance = 0;     ///< metres from the camera
     double eyeDistanceError = 0;
     bool hasFaceNormal = false;
-    Vec3 faceNormal;  ///< unit
+    Vec3 faceNormal;            ///< unit
+    double offPlaneMetres = 0;  ///< how far the rounding of the depth image may have moved the position off the face
+    double offPlaneError = 0;
     std::uint8_t receiverMask = 0xFF;
     bool subsurface = false;
 };

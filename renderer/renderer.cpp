@@ -44,6 +44,8 @@ std::unique_ptr<Context> makeContext(const Device& device, const RendererDesc& d
     c.pcfRadius = desc.pcfRadius;
     c.pcss = desc.pcss;
     c.visibilityBits = desc.visibilityBits;
+    c.depthBias = desc.depthBias;
+    c.facedAwayIsDark = desc.facedAwayIsDark;
     c.maxShadowAtlases = 1;
     c.listReservation = desc.listReservation;
     c.fixedListEntriesPerTile = desc.fixedListEntriesPerTile;
@@ -79,7 +81,7 @@ LightType typeOf(LightKind kind) {
 }
 
 Light lightOf(const SceneLight& light, const glm::dvec3& origin, std::uint32_t firstShadowView,
-              std::uint32_t cascadeCount) {
+              std::uint32_t cascadeCount, float defaultBiasMetres) {
     Light l;
     l.type = typeOf(light.kind);
     const glm::vec3 position(glm::dvec3(light.position) - origin);
@@ -89,6 +91,7 @@ Light lightOf(const SceneLight& light, const glm::dvec3& origin, std::uint32_t f
     l.intensity = light.intensity * std::max({light.colour.x, light.colour.y, light.colour.z});
     l.outerConeAngle = std::min(light.outerConeAngle, 1.55f);
     l.sourceRadius = light.sourceRadius;
+    l.biasMetres = light.biasMetres >= 0.0f ? light.biasMetres : defaultBiasMetres;
     l.firstShadowView = firstShadowView;
     l.cascadeCount = cascadeCount;
     return l;
@@ -174,7 +177,7 @@ struct Renderer::State {
           scene(d, s),
           gbuffer(d, scene, r.widthPx, r.heightPx),
           planner(planSettingsOf(d, s, r)),
-          atlas(d, scene, planner.settings().atlasSizePx),
+          atlas(d, scene, planner.settings().atlasSizePx, 1, r.shadowDrawing),
           lighting(d, *context, s, gbuffer, {.quantises = r.quantiseInline, .walksMasks = !r.inlineNeedsLists}),
           timer(d, kFramesInFlight),
           commands{Commands(d), Commands(d)} {
@@ -227,7 +230,7 @@ std::vector<Light> Renderer::State::lightsOf(const glm::dvec3& origin, const Sha
     for (std::size_t i = 0; i < sceneLights.size(); ++i) {
         const bool none = plan.firstView.empty() || !sceneLights[i].casts;
         const std::uint32_t first = none ? kNoShadowViews : plan.firstView[i];
-        lights.push_back(lightOf(sceneLights[i], origin, first, plan.cascadeCount));
+        lights.push_back(lightOf(sceneLights[i], origin, first, plan.cascadeCount, desc.biasMetres));
     }
     return lights;
 }
@@ -276,9 +279,10 @@ void Renderer::State::beginView(const Camera& camera, const glm::dvec3& origin, 
     frame.view.lights = lights;
     frame.shadowViews = views;
     frame.depth = {gbuffer.depth().view()};
-    frame.faceNormals = {gbuffer.view(GBuffer::FaceNormal)};
+    if (desc.readFaceNormals) frame.faceNormals = {gbuffer.view(GBuffer::FaceNormal)};
     frame.receiverFlags = {gbuffer.view(GBuffer::Receiver)};
     frame.atlases = atlases;
+    frame.subsurfaceBiasMetres = desc.shadowDrawing.subsurfaceFronts ? desc.subsurfaceBiasMetres : 0.0f;
     frame.patternPerFrame = desc.patternPerFrame;
     frame.shadowBounds = desc.shadowBounds && mode != ShadowMode::Off;
     require(view->beginFrame(frame));

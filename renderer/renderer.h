@@ -12,6 +12,7 @@
 #include "renderer/gpu/device.h"
 #include "renderer/picture/picture.h"
 #include "renderer/scene/scene.h"
+#include "renderer/shadow_atlas/drawing.h"
 
 namespace gnomon::renderer {
 
@@ -24,6 +25,12 @@ struct RendererDesc {
     PcssTaps pcss = kPcssMedium;
     bool patternPerFrame = false;
     std::uint32_t visibilityBits = 8;
+    DepthBias depthBias = DepthBias::Oriented;
+    bool facedAwayIsDark = true;
+    float biasMetres = 0.002f;           // of lights that state none
+    float subsurfaceBiasMetres = 0.02f;  // with shadowDrawing.subsurfaceFronts
+    ShadowDrawing shadowDrawing;
+    bool readFaceNormals = true;  // off: they are derived from the depth buffer
     bool shadowBounds = true;  // searches of Filter::Pcss end where the bounds of the shadowmaps tell the result
     ListReservation listReservation = ListReservation::Accurate;
     std::uint32_t fixedListEntriesPerTile = 32;          // with ListReservation::Fixed

@@ -37,6 +37,18 @@ std::uint32_t reservationOf(ListReservation reservation) {
     return kReserveApproximate;
 }
 
+std::uint32_t depthBiasOf(DepthBias bias) {
+    switch (bias) {
+        case DepthBias::Oriented:
+            return kDepthBiasOriented;
+        case DepthBias::OrientedConstant:
+            return kDepthBiasOrientedConstant;
+        case DepthBias::Unbiased:
+            return kDepthBiasUnbiased;
+    }
+    return kDepthBiasOriented;
+}
+
 Result checkDesc(const ContextDesc& desc) {
     if (desc.instance == VK_NULL_HANDLE || desc.physicalDevice == VK_NULL_HANDLE || desc.device == VK_NULL_HANDLE) {
         return Result::failure(Status::BadArgument, "ContextDesc needs an instance, a physical device and a device.");
@@ -254,10 +266,13 @@ Result Context::create(const ContextDesc& desc, std::unique_ptr<Context>& out) n
                                         desc.pcss.searchTaps,
                                         desc.pcss.filterTaps,
                                         desc.visibilityBits,
-                                        desc.maxShadowAtlases};
+                                        desc.maxShadowAtlases,
+                                        depthBiasOf(desc.depthBias),
+                                        desc.facedAwayIsDark ? 1u : 0u};
         static_assert(kSpecSubgroupSize == 0 && kSpecProvider == 1 && kSpecListReservation == 2 &&
                       kSpecPcfRadius == 3 && kSpecHostDepthPyramid == 4 && kSpecPcssSearchTaps == 5 &&
-                      kSpecPcssFilterTaps == 6 && kSpecVisibilityBits == 7 && kSpecShadowAtlases == 8);
+                      kSpecPcssFilterTaps == 6 && kSpecVisibilityBits == 7 && kSpecShadowAtlases == 8 &&
+                      kSpecDepthBias == 9 && kSpecFacedAwayIsDark == 10);
         std::copy(std::begin(values), std::end(values), state->specialization);
         if (Result made = createLayouts(*state); !made) return made;
         for (std::uint32_t id = 0; id < kPassCount; ++id) {

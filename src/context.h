@@ -9,7 +9,7 @@
 
 namespace gnomon {
 
-inline constexpr std::uint32_t kSpecializationCount = 9;
+inline constexpr std::uint32_t kSpecializationCount = 11;
 
 struct Context::State {
     DeviceContext device;

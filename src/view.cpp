@@ -306,6 +306,9 @@ Result checkFrame(const View::State& state, const FrameDesc& frame) {
     if (!(frame.subsurfaceBiasMetres >= 0.0f) || frame.subsurfaceBiasMetres > 1e6f) {
         return Result::failure(Status::BadArgument, "FrameDesc::subsurfaceBiasMetres must be a length of at least 0.");
     }
+    if (!(frame.depthStep >= 0.0f) || frame.depthStep > 1.0f) {
+        return Result::failure(Status::BadArgument, "FrameDesc::depthStep must be from 0 to 1.");
+    }
     return {};
 }
 
@@ -333,8 +336,9 @@ void completeFrameConstants(const View::State& state, const FrameDesc& frame, Gp
     constants.pools.z = state.context->desc.fixedListEntriesPerTile;
     if (frame.faceNormals.view != VK_NULL_HANDLE) constants.pools.w |= kFrameFaceNormalsBit;
     if (frame.receiverFlags.view != VK_NULL_HANDLE) constants.pools.w |= kFrameReceiverFlagsBit;
-    if (frame.dropLightsFacedAway) constants.pools.w |= kFrameFacingCullBit;
+    if (frame.dropLightsFacedAway && state.context->desc.facedAwayIsDark) constants.pools.w |= kFrameFacingCullBit;
     constants.shadows.x = frame.subsurfaceBiasMetres;
+    constants.shadows.y = frame.depthStep;
     constants.random.x = static_cast<std::uint32_t>(frame.frameNumber);
     constants.random.z = state.context->desc.pcss.searchTaps;
     constants.random.w = state.context->desc.pcss.filterTaps;

@@ -46,6 +46,19 @@ inline constexpr PcssTaps kPcssLow = {8, 12};
 inline constexpr PcssTaps kPcssMedium = {16, 24};
 inline constexpr PcssTaps kPcssHigh = {32, 64};
 
+/// What keeps a receiver from shadowing itself.
+enum class DepthBias : std::uint8_t {
+    /// Nearer to the light by Light::biasMetres, in linear depth, and each texel compared with the plane of the receiver's
+    /// face at its own centre. Draw shadowmaps without hardware bias. Needs no tuning.
+    /// Source: the paper, section 4.2; the plane is ours.
+    Oriented,
+    /// The paper's listing 7 as printed: one depth for all texels, nearer to the light where the face looks at it, farther
+    /// where it looks away. Draw shadowmaps with a slope factor of 1, and leave ContextDesc::facedAwayIsDark off.
+    OrientedConstant,
+    /// Depths are compared as they are: for hosts that draw their shadowmaps with a hardware bias.
+    Unbiased,
+};
+
 /// How space in the light lists is given out.
 enum class ListReservation : std::uint8_t {
     Approximate,  ///< the paper's way: by phase 2, one atomic per 64 tiles, as much as the approximate count
@@ -71,6 +84,10 @@ struct ContextDesc {
     Filter filter = Filter::Pcss;
     std::uint32_t pcfRadius = 1;  ///< texels, 1 to 3
     PcssTaps pcss = kPcssMedium;
+    DepthBias depthBias = DepthBias::Oriented;
+    /// A pixel whose face looks away from a light is dark, and its shadowmaps are not asked; subsurface pixels are never.
+    /// Off, with DepthBias::Unbiased: face normals are not read at all.
+    bool facedAwayIsDark = true;
     /// 1 to 4. With one, shaders need not choose at every tap.
     std::uint32_t maxShadowAtlases = 4;
     /// Bits of a pixel's visibility in a slot: 8, or 4 for half the memory and an error of up to 0.066.
@@ -97,7 +114,7 @@ public:
     [[nodiscard]] VkDescriptorSetLayout receiversSetLayout() const noexcept;
     [[nodiscard]] VkDescriptorSetLayout shadowmapsSetLayout() const noexcept;
     [[nodiscard]] std::uint32_t subgroupSize() const noexcept;
-    /// For pipelines of the host that include src/shading: the values of specialization constants 0 to 8, in order.
+    /// For pipelines of the host that include src/shading: the values of specialization constants 0 to 10, in order.
     [[nodiscard]] std::span<const std::uint32_t> specializationValues() const noexcept;
 
     struct State;
@@ -162,6 +179,9 @@ struct FrameDesc {
     ViewInput view;
     std::span<const ShadowView> shadowViews;
     HostImage depth;  ///< D32, D24 or D16 aspect view, 2D
+    /// Between neighbouring values of the depth image: 0 for D32, 6e-8 for D24, 1.6e-5 for D16. The bias grows by what
+    /// that, and the rounding of floats, may make of a position.
+    float depthStep = 0.0f;
     /// Optional: R16G16_UINT, octahedral, the side the camera sees (src/shading/octahedral.glsl).
     HostImage faceNormals;
     HostImage receiverFlags;  ///< optional: R8G8_UINT: receiver mask; bit 0: subsurface
@@ -172,10 +192,14 @@ struct FrameDesc {
     /// recordShadowBounds() will be called in this frame. Bounds are kept from frame to frame while ShadowView::changed
     /// is false; set that true once after a recorded frame that was never submitted.
     bool shadowBounds = false;
+    /// Subsurface pixels move toward the light by this, if it is more than the light's own bias. Where subsurface casters
+    /// are drawn without the faces that look at the light, 0 is right; where those are drawn too, the thickness through
+    /// which light shall pass. Source: the paper, section 4.2.
     float subsurfaceBiasMetres = 0.02f;
     /// Turns the sample pattern of Filter::Pcss from frame to frame, for hosts that accumulate frames.
     bool patternPerFrame = false;
-    bool dropLightsFacedAway = true;  ///< phase 3 drops lights that every pixel of a tile looks away from
+    /// Phase 3 drops lights that every pixel of a tile looks away from, with ContextDesc::facedAwayIsDark.
+    bool dropLightsFacedAway = true;
 };
 
 /// Counted on the device, and read back when the frame has finished.

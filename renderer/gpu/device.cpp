@@ -31,6 +31,7 @@ void Device::create(const std::vector<const char*>& extensions, void* moreFeatur
     VkPhysicalDeviceFeatures found{};
     vkGetPhysicalDeviceFeatures(info_.handle, &found);
     features_.samplerAnisotropy = found.samplerAnisotropy;
+    features_.depthBiasClamp = found.depthBiasClamp;
 
     VkPhysicalDeviceVulkan13Features v13{};
     v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;

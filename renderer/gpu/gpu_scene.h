@@ -58,6 +58,7 @@ struct TriangleSource {
 struct MaterialTraits {
     bool masked = false;  ///< alpha tested (blended materials are drawn so, too)
     bool doubleSided = false;
+    bool subsurface = false;
 };
 
 /// Not thread safe.

@@ -164,7 +164,7 @@ GpuScene::GpuScene(const Device& device, const Scene& scene) : device_(device) {
     Streams streams;
     const GeometryOfPrimitives geometryOf = addGeometries(scene, streams);
     for (const Material& material : scene.materials) {
-        traits_.push_back({material.alphaMode != AlphaMode::Opaque, material.doubleSided});
+        traits_.push_back({material.alphaMode != AlphaMode::Opaque, material.doubleSided, material.subsurface});
     }
     addItems(scene, geometryOf);
     Uploader uploader(device);

@@ -34,6 +34,10 @@ VkPipelineRasterizationStateCreateInfo rasterOf(const GraphicsPipelineDesc& desc
     raster.cullMode = desc.cull;
     raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
     raster.lineWidth = 1.0f;
+    raster.depthBiasEnable = desc.depthBiasConstant != 0.0f || desc.depthBiasSlope != 0.0f;
+    raster.depthBiasConstantFactor = desc.depthBiasConstant;
+    raster.depthBiasSlopeFactor = desc.depthBiasSlope;
+    raster.depthBiasClamp = desc.depthBiasClamp;
     return raster;
 }
 

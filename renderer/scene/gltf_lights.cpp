@@ -59,6 +59,10 @@ void addLight(Document& document, const PlacedNode& node, Scene& scene) {
     if (light.intensity < 0.0f) refuse("{} has the intensity {}", user, light.intensity);
     light.rangeMetres = light.kind == LightKind::Directional ? 0.0f : toFloat(source.range, user);
     if (light.rangeMetres < 0.0f) refuse("{} has the range {}", user, light.rangeMetres);
+    if (const tinygltf::Value* bias = member(source.extras, "shadowBiasMetres")) {
+        light.biasMetres = bias->IsNumber() ? toFloat(bias->GetNumberAsDouble(), user) : -1.0f;
+        if (light.biasMetres < 0.0f) refuse("{} has a shadowBiasMetres that is no length", user);
+    }
     scene.lights.push_back(std::move(light));
 }
 

@@ -112,6 +112,7 @@ struct SceneLight {
     float innerConeAngle = 0.0f, outerConeAngle = 0.785398163f;  // half-angles, radians
     float sourceRadius = 0.0f;                                   // metres, directional: radians; 0: none given
     bool casts = true;
+    float biasMetres = -1.0f;    // depth bias; below 0: the renderer's default
     std::uint32_t node = kNone;  // moves with this node; position and direction are those at rest
 };
 

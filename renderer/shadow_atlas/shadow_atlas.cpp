@@ -16,6 +16,15 @@ constexpr std::uint32_t kMaskedVertexSpirv[] = {
 constexpr std::uint32_t kMaskedFragmentSpirv[] = {
 #include "shadow_masked_frag.spv.h"
 };
+
+// Whether a view's image shows the world mirrored: its rows across, down and into the scene turn to the left.
+bool isMirrored(const ShadowView& view) {
+    const glm::mat4 m = glm::make_mat4(view.clipFromWorld);
+    const auto row = [&](int i) { return glm::dvec3(m[0][i], m[1][i], m[2][i]); };
+    const glm::dvec3 axis = view.orthographic ? -row(2) : row(3);  // reversed Z falls into the scene
+    return glm::dot(glm::cross(row(0), row(1)), axis) < 0.0;
+}
+
 }  // namespace
 
 std::uint32_t ShadowAtlasImage::defaultSizePx(const Device& device, std::uint32_t screenHeightPx) {
@@ -26,14 +35,16 @@ std::uint32_t ShadowAtlasImage::defaultSizePx(const Device& device, std::uint32_
 }
 
 ShadowAtlasImage::ShadowAtlasImage(const Device& device, const GpuScene& scene, std::uint32_t sizePx,
-                                   std::uint32_t layers)
-    : device_(device), sizePx_(sizePx) {
+                                   std::uint32_t layers, const ShadowDrawing& drawing)
+    : device_(device), sizePx_(sizePx), subsurfaceFronts_(drawing.subsurfaceFronts) {
     if (!std::has_single_bit(sizePx)) throw GpuError("The shadow atlas' side must be a power of two.");
     const VkPhysicalDeviceLimits& limits = device.limits();
     if (sizePx > std::min(limits.maxFramebufferWidth, limits.maxFramebufferHeight)) {
         throw GpuError("'" + device.info().name + "' draws at most " + std::to_string(limits.maxFramebufferWidth) +
                        " pixels wide; choose a smaller shadow atlas.");
     }
+    if (drawing.bias.clamp != 0.0f && device.features().depthBiasClamp == VK_FALSE)
+        throw GpuError("'" + device.info().name + "' cannot clamp a depth bias; leave the clamp out.");
     ImageDesc desc;
     desc.name = "shadow atlas";
     desc.format = kFormat;
@@ -61,6 +72,11 @@ ShadowAtlasImage::ShadowAtlasImage(const Device& device, const GpuScene& scene, 
     pipeline.vertexSpirv = kVertexSpirv;
     pipeline.layout = layout_;
     pipeline.depthFormat = kFormat;
+    pipeline.dynamicCull = true;
+    // Reversed Z: farther from the light is less.
+    pipeline.depthBiasConstant = -drawing.bias.constantFactor;
+    pipeline.depthBiasSlope = -drawing.bias.slopeFactor;
+    pipeline.depthBiasClamp = -drawing.bias.clamp;
     opaque_ = makeGraphicsPipeline(device, pipeline);
     pipeline.vertexSpirv = kMaskedVertexSpirv;
     pipeline.fragmentSpirv = kMaskedFragmentSpirv;
@@ -142,10 +158,13 @@ void ShadowAtlasImage::drawView(VkCommandBuffer commands, const GpuScene& scene,
                        view.view.clipFromWorld);
     VkPipeline bound = VK_NULL_HANDLE;
     std::uint32_t material = kNone;
+    const bool mirrored = isMirrored(view.view);
     for (std::uint32_t r = task.firstRange; r < task.firstRange + task.rangeCount; ++r) {
         const DrawRange& range = ranges_[r];
-        const std::uint32_t itemMaterial = scene.items()[range.item].material;
-        const bool masked = scene.materials()[itemMaterial].masked;
+        const DrawItem& item = scene.items()[range.item];
+        const std::uint32_t itemMaterial = item.material;
+        const MaterialTraits& traits = scene.materials()[itemMaterial];
+        const bool masked = traits.masked;
         const VkPipeline wanted = masked ? masked_ : opaque_;
         if (wanted != bound) vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, bound = wanted);
         if (masked && itemMaterial != material) {
@@ -153,6 +172,10 @@ void ShadowAtlasImage::drawView(VkCommandBuffer commands, const GpuScene& scene,
             const VkDescriptorSet set = scene.materialSet(material);
             vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 1, 1, &set, 0, nullptr);
         }
+        const bool frontsLeftOut = !subsurfaceFronts_ && traits.subsurface && !traits.doubleSided;
+        vkCmdSetCullMode(commands, frontsLeftOut ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_NONE);
+        vkCmdSetFrontFace(commands,
+                          item.mirrored != mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
         vkCmdDrawIndexed(commands, range.triangleCount * 3, 1, range.firstTriangle * 3, 0, range.item);
         ++statistics.draws;
         statistics.triangles += range.triangleCount;

@@ -1,8 +1,8 @@
 #pragma once
 // The shadow atlas: one D32 image with layers, and the pass that draws those views whose content changed.
 //
-// Everything is drawn without hardware bias and without culling of faces: cloth without thickness casts from both
-// sides; the library's oriented bias does the rest. Reversed Z.
+// By default everything is drawn without hardware bias, since the library's oriented bias does the rest, and,
+// subsurface casters apart, without culling of faces: cloth without thickness casts from both sides. Reversed Z.
 
 #include <cstdint>
 #include <unordered_map>
@@ -10,6 +10,7 @@
 
 #include "gnomon/tiled_shadows.h"
 #include "renderer/gpu/gpu_scene.h"
+#include "renderer/shadow_atlas/drawing.h"
 #include "renderer/shadow_atlas/plan.h"
 
 namespace gnomon::renderer {
@@ -30,7 +31,8 @@ public:
     static std::uint32_t defaultSizePx(const Device& device, std::uint32_t screenHeightPx);
 
     /// Creates the image, wholly unoccluded. The scene gives the set layouts. Throws GpuError.
-    ShadowAtlasImage(const Device& device, const GpuScene& scene, std::uint32_t sizePx, std::uint32_t layers = 1);
+    ShadowAtlasImage(const Device& device, const GpuScene& scene, std::uint32_t sizePx, std::uint32_t layers = 1,
+                     const ShadowDrawing& drawing = {});
 
     /// Finds what changed: a view is drawn again if its light or its rectangle changed, or if something moved in its
     /// volume; said in the plan's views as ShadowView::changed. `lights` is what the plan was made from. After
@@ -73,6 +75,7 @@ private:
 
     const Device& device_;
     std::uint32_t sizePx_;
+    bool subsurfaceFronts_;
     GpuImage image_;
     PipelineLayout layout_;
     Pipeline opaque_, masked_;

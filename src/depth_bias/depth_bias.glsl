@@ -8,12 +8,17 @@
 // Here: device depth is affine in a texel's position along any plane, with perspective (A + B / z, and 1 / z is affine)
 // as without. So one depth and one slope per pixel give the plane's depth at every texel's centre: what the rasterizer
 // stored there, if nothing is nearer.
+// The bias grows by how far the rounding of the camera's depth may have moved the position off its face.
+// Other modes, to compare: the paper's listing 7 (one depth for all texels, nearer to the light or, where the face
+// looks away, farther), and no bias at all, for maps that were drawn with a hardware bias.
 // Limits: the slope of faces that are nearly edge-on to the light is cut at kLeastCosine (1.1 degrees). The map
 // holds the surface as the rasterizer snapped it, 2^-4 (SwiftShader) to 2^-8 texels aside, hence the slack by slope.
 #ifndef GNOMON_DEPTH_BIAS_DEPTH_BIAS_GLSL
 #define GNOMON_DEPTH_BIAS_DEPTH_BIAS_GLSL
 
+#include "depth_bias/mode.glsl"
 #include "gpu_interface/structs.h"
+#include "shading/light_tests.glsl"
 #include "shading/receiver.glsl"
 
 const float kLeastCosine = 0.02;
@@ -26,8 +31,9 @@ float rayLength(vec2 tangent) {
 }
 
 // Slope of the device depth of the plane through the receiver with face normal n, per texel. `ndc`, `linear` and
-// `tangent` are the receiver's in the view.
-vec2 planeSlope(GpuShadowView view, bool orthographic, vec3 n, vec2 ndc, float linear, vec2 tangent) {
+// `tangent` are the receiver's in the view. `linearPerMetre`: how much linear depth a metre across the face is.
+vec2 planeSlope(GpuShadowView view, bool orthographic, vec3 n, vec2 ndc, float linear, vec2 tangent,
+                out float linearPerMetre) {
     vec3 x = vec3(view.clipFromWorld[0].x, view.clipFromWorld[1].x, view.clipFromWorld[2].x);
     vec3 y = vec3(view.clipFromWorld[0].y, view.clipFromWorld[1].y, view.clipFromWorld[2].y);
     vec3 z = orthographic ? vec3(view.clipFromWorld[0].z, view.clipFromWorld[1].z, view.clipFromWorld[2].z) /
@@ -37,8 +43,11 @@ vec2 planeSlope(GpuShadowView view, bool orthographic, vec3 n, vec2 ndc, float l
     precise vec2 m = vec2(dot(n, cross(y, z)), dot(n, cross(z, x)));
     precise float mz = dot(n, xy);
     precise float k = orthographic ? mz : m.x * ndc.x + (m.y * ndc.y + mz);
-    precise float least = kLeastCosine * sqrt(dot(xy, xy)) * (orthographic ? 1.0 : rayLength(tangent));
+    precise float area = sqrt(dot(xy, xy));
+    precise float least = kLeastCosine * area * (orthographic ? 1.0 : rayLength(tangent));
     if (abs(k) < least) k = k < 0.0 ? -least : least;
+    precise float across = area / abs(k);
+    linearPerMetre = across;
     precise float perNdc = orthographic ? -view.depthFromLinearB / k : view.depthFromLinearB / (linear * k);
     precise vec2 slope = m * perNdc / view.pxFromNdcScale;
     return slope;
@@ -49,6 +58,11 @@ float linearBias(GpuLight light, Receiver receiver) {
     return receiver.subsurface ? max(light.biasMetres, frame.shadows.x) : light.biasMetres;
 }
 
+bool movesTowardLight(GpuLight light, Receiver receiver) {
+    vec3 toLight = lightType(light) == kLightDirectional ? -light.directionWs : light.positionWs - receiver.positionWs;
+    return receiver.subsurface || facesLight(receiver.faceNormalWs, toLight);
+}
+
 // What float rounding may make of a device depth, in the map and here: 16 steps of its terms, and the rasterizer's
 // snapping. With reversed Z the first is 20 micrometres at 20 m; with standard Z and a near plane of 5 cm, 16 mm, and
 // no smaller bias could hold there.
@@ -56,6 +70,34 @@ float deviceDepthSlack(GpuShadowView view, float depth, vec2 slope) {
     precise float rounding = 1e-6 * (abs(view.depthFromLinearA) + abs(depth - view.depthFromLinearA));
     precise float slack = rounding + kSnapPx * (abs(slope.x) + abs(slope.y));
     return slack;
+}
+
+float deviceDepthOf(GpuShadowView view, bool orthographic, float linear) {
+    float b = view.depthFromLinearB;
+    precise float depth = view.depthFromLinearA + (orthographic ? b * linear : b / max(linear, 1e-4));
+    return depth;
+}
+
+// The device depth at which a receiver is compared at its own place in a view, and the slope of its plane there, per
+// texel. `ndc`, `linear` and `tangent` are its place in the view.
+float biasedDepth(GpuShadowView view, bool orthographic, GpuLight light, Receiver receiver, vec2 ndc, float linear,
+                  vec2 tangent, out vec2 slope) {
+    slope = vec2(0.0);
+    if (kDepthBias == kDepthBiasUnbiased) return deviceDepthOf(view, orthographic, linear);
+    float bias = linearBias(light, receiver);
+    // Away from the light, so that what looks away from it rather shadows itself.
+    float sign = kFacedAwayIsDark != 0u || movesTowardLight(light, receiver) ? 1.0 : -1.0;
+    if (kDepthBias == kDepthBiasOrientedConstant) {
+        precise float moved = linear - sign * bias;
+        return deviceDepthOf(view, orthographic, moved);
+    }
+    float linearPerMetre;
+    slope = planeSlope(view, orthographic, receiver.faceNormalWs, ndc, linear, tangent, linearPerMetre);
+    precise float biased = linear - sign * (bias + receiver.offPlaneMetres * linearPerMetre);
+    precise float depth = deviceDepthOf(view, orthographic, biased);
+    precise float slack = sign * deviceDepthSlack(view, depth, slope);
+    precise float compared = (view.flags & kShadowViewReversedZBit) != 0u ? depth + slack : depth - slack;
+    return compared;
 }
 
 #endif

@@ -47,12 +47,6 @@ float linearDepthOf(GpuShadowView view, vec4 clip) {
     return linear;
 }
 
-float deviceDepthOf(GpuShadowView view, float linear) {
-    float b = view.depthFromLinearB;
-    precise float depth = view.depthFromLinearA + (isOrthographicView(view) ? b * linear : b / max(linear, 1e-4));
-    return depth;
-}
-
 ShadowPoint shadowPointIn(uint viewIndex, GpuLight light, Receiver receiver) {
     GpuShadowView view = shadowViews[viewIndex];
     bool orthographic = isOrthographicView(view);
@@ -66,13 +60,8 @@ ShadowPoint shadowPointIn(uint viewIndex, GpuLight light, Receiver receiver) {
     s.px = px;
     precise vec2 tangent = orthographic ? vec2(0.0) : ndc * view.pxFromNdcScale / view.pxPerMetre;
     s.tangent = tangent;
-    s.slope = planeSlope(view, orthographic, receiver.faceNormalWs, ndc, s.linear, tangent);
-    precise float biased = s.linear - linearBias(light, receiver);
-    precise float depth = deviceDepthOf(view, biased);
-    precise float slack = deviceDepthSlack(view, depth, s.slope);
+    s.depth = biasedDepth(view, orthographic, light, receiver, ndc, s.linear, tangent, s.slope);
     s.reversedZ = (view.flags & kShadowViewReversedZBit) != 0u;
-    precise float compared = s.reversedZ ? depth + slack : depth - slack;
-    s.depth = compared;
     s.rectMin = view.rectMinPx;
     s.rectMax = view.rectMaxPx;
     s.atlas = view.atlasAndLayer & 0xFFu;

@@ -77,7 +77,7 @@ float shadowFadeOf(GpuLight light, Receiver receiver) {
 float evaluateVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
     if (!lightCasts(light) || kProvider == kProviderOff) return 1.0;
     precise float visibility = 0.0;
-    if (receiver.subsurface || facesLight(receiver.faceNormalWs, toLight)) {
+    if (kFacedAwayIsDark == 0u || receiver.subsurface || facesLight(receiver.faceNormalWs, toLight)) {
         visibility = providerVisibility(light, receiver, toLight);
     }
     precise float faded = 1.0 - shadowFadeOf(light, receiver) * (1.0 - visibility);

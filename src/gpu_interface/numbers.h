@@ -100,6 +100,11 @@ GNOMON_CONSTANT GNOMON_UINT kProviderPcf = 1u;
 GNOMON_CONSTANT GNOMON_UINT kProviderOff = 2u;  // every light lit everywhere: the price of the lists alone
 GNOMON_CONSTANT GNOMON_UINT kProviderPcss = 3u;
 
+// --- Depth bias ------------------------------------------------------------------------------------------------------
+GNOMON_CONSTANT GNOMON_UINT kDepthBiasOriented = 0u;          // toward the light; each texel against the face's plane
+GNOMON_CONSTANT GNOMON_UINT kDepthBiasOrientedConstant = 1u;  // toward the light or away from it; one depth for all
+GNOMON_CONSTANT GNOMON_UINT kDepthBiasUnbiased = 2u;          // the host biases what it draws, or nobody does
+
 // --- Frame flags -----------------------------------------------------------------------------------------------------
 GNOMON_CONSTANT GNOMON_UINT kFrameOrthographicBit = 1u;
 GNOMON_CONSTANT GNOMON_UINT kFrameFaceNormalsBit = 2u;    // the host has face normals; else derived from depth
@@ -133,6 +138,8 @@ GNOMON_CONSTANT GNOMON_UINT kSpecPcssSearchTaps = 5u;    // 1 to kMaxPcssTaps
 GNOMON_CONSTANT GNOMON_UINT kSpecPcssFilterTaps = 6u;    // 1 to kMaxPcssTaps
 GNOMON_CONSTANT GNOMON_UINT kSpecVisibilityBits = 7u;    // 8 or 4
 GNOMON_CONSTANT GNOMON_UINT kSpecShadowAtlases = 8u;     // 1 to kMaxShadowAtlases: how many a frame may have
+GNOMON_CONSTANT GNOMON_UINT kSpecDepthBias = 9u;         // kDepthBiasOriented ...
+GNOMON_CONSTANT GNOMON_UINT kSpecFacedAwayIsDark = 10u;  // 1: a face that looks away from a light is dark, unasked
 GNOMON_CONSTANT GNOMON_UINT kSpecFirstFree = 16u;        // a host's own constants start here
 
 // --- Descriptor bindings ---------------------------------------------------------------------------------------------

@@ -93,7 +93,7 @@ struct GpuFrame {
     uvec4 tileCounts;          // xy shadow tiles, zw tile groups
     uvec4 lightCounts;         // x all lights, y directional lights, z mask tiles per row, w mask tile rows
     uvec4 pools;               // x list entries, y visibility slots, z fixed entries per tile (debugging), w flags
-    vec4 shadows;              // x subsurface bias (m); yzw unused
+    vec4 shadows;              // x subsurface bias (m), y step of the host's depth buffer; zw unused
     uvec4 random;              // x frame number, low 32 bits; y turns the filters' pattern, 2^32 to a turn; z, w taps
 };
 

@@ -2,14 +2,19 @@
 #ifndef GNOMON_SHADING_RECEIVER_GLSL
 #define GNOMON_SHADING_RECEIVER_GLSL
 
+#include "depth_bias/mode.glsl"
 #include "gpu_interface/receivers_set.glsl"
 #include "shading/frame.glsl"
 #include "shading/octahedral.glsl"
+
+// Relative error of a device depth that a rasterizer interpolated and stored as a float: one to two steps.
+const float kDeviceDepthRounding = 1.2e-7;
 
 struct Receiver {
     vec3 positionWs;
     vec3 faceNormalWs;  // of the side that the camera sees, from the geometry and not from a normal map
     float viewDepth;
+    float offPlaneMetres;  // how far the position may lie from the face that the camera saw
     uvec2 pixel;  // in the active extent
     uint mask;
     bool subsurface;
@@ -49,11 +54,22 @@ vec3 faceNormalFromDepth(uvec2 pixel, vec3 p) {
     return dot(unit, toEye) < 0.0 ? -unit : unit;
 }
 
+// What the rounding of the host's depth makes of the position, across the face. A step aside along the face is no harm.
+float offPlaneMetres(float d, Receiver r) {
+    vec4 m = frame.viewDepthFromDevice;
+    precise float w = m.z * d + m.w;
+    precise float perDevice = (m.x * m.w - m.y * m.z) / (w * w);
+    precise vec3 ray = isOrthographic() ? frame.axisZWs.xyz : (r.positionWs - frame.eyeWs.xyz) / r.viewDepth;
+    precise float metres = abs(perDevice * dot(r.faceNormalWs, ray)) * (kDeviceDepthRounding * d + frame.shadows.y);
+    return metres;
+}
+
 Receiver receiverAt(uvec2 pixel) {
     Receiver r;
     r.positionWs = vec3(0.0);
     r.faceNormalWs = vec3(0.0, 0.0, 1.0);
     r.viewDepth = 0.0;
+    r.offPlaneMetres = 0.0;
     r.pixel = pixel;
     r.mask = 0xFFu;
     r.subsurface = false;
@@ -65,11 +81,14 @@ Receiver receiverAt(uvec2 pixel) {
     r.viewDepth = viewDepthOf(d);
     r.positionWs = worldFromPixel(vec2(pixel) + 0.5, r.viewDepth);
     ivec2 texel = ivec2(pixel + frame.extent.zw);
-    if ((frame.pools.w & kFrameFaceNormalsBit) != 0u) {
+    if (!kNeedsFaceNormals) {
+        r.faceNormalWs = vec3(0.0);
+    } else if ((frame.pools.w & kFrameFaceNormalsBit) != 0u) {
         r.faceNormalWs = decodeOctahedral(texelFetch(hostFaceNormals, texel, 0).xy);
     } else {
         r.faceNormalWs = faceNormalFromDepth(pixel, r.positionWs);
     }
+    r.offPlaneMetres = offPlaneMetres(d, r);
     if ((frame.pools.w & kFrameReceiverFlagsBit) != 0u) {
         uvec2 flags = texelFetch(hostReceiverFlags, texel, 0).xy;
         r.mask = flags.x;

@@ -33,6 +33,10 @@ ShadowInput shadowInputOf(const FrameInput& input, const FrameResult& result) {
     out.patternTurn = input.patternPerFrame ? result.constants.random.x * 2654435769u : 0u;
     EXPECT_EQ(result.constants.random.y, out.patternTurn);
     out.visibilityBits = setup.visibilityBits;
+    out.bias = setup.depthBias == DepthBias::Oriented           ? BiasMode::Oriented
+               : setup.depthBias == DepthBias::OrientedConstant ? BiasMode::OrientedConstant
+                                                                : BiasMode::Unbiased;
+    out.facedAwayIsDark = setup.facedAwayIsDark;
     out.subsurfaceBiasMetres = input.subsurfaceBiasMetres;
     out.views = makeShadowViewModels(input.shadows->views);
     out.atlases = input.shadows->atlases;
@@ -177,7 +181,8 @@ Checked checkFrame(const FrameInput& input, const FrameResult& result, const Che
     expectNone(checkGpuLights(all, camera, result.lights), "lights");
     out.lights = orderLights(all, result.lights);
     if (options.depths) expectNone(checkTileDepths(out.grid, result.depthRanges), "hierarchical depth");
-    out.expected = findLights(out.grid, out.lights, input.dropLightsFacedAway);
+    out.expected =
+        findLights(out.grid, out.lights, input.dropLightsFacedAway && result.setup.facedAwayIsDark);
     const ListBuffers lists = result.lists();
     out.approximate = checkApproximate(out.grid, out.expected, out.lights.size(), result.groupMasks, lists);
     expectNone(out.approximate.findings, "find lights approximate");

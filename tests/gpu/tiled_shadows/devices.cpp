@@ -114,6 +114,8 @@ ContextDesc TestDevice::contextDesc(const ContextSetup& setup) const {
     desc.pcfRadius = setup.pcfRadius;
     desc.pcss = setup.pcss;
     desc.visibilityBits = setup.visibilityBits;
+    desc.depthBias = setup.depthBias;
+    desc.facedAwayIsDark = setup.facedAwayIsDark;
     desc.maxShadowAtlases = setup.maxShadowAtlases;
     desc.listReservation = setup.reservation;
     desc.fixedListEntriesPerTile = setup.fixedEntries;
@@ -124,10 +126,10 @@ ContextDesc TestDevice::contextDesc(const ContextSetup& setup) const {
 
 const Context* TestDevice::context(const ContextSetup& setup) {
     char key[96];
-    std::snprintf(key, sizeof(key), "%d %u %d %u %u %d %d %u %u %u %u", int(setup.filter), setup.pcfRadius,
+    std::snprintf(key, sizeof(key), "%d %u %d %u %u %d %d %u %u %u %u %d %d", int(setup.filter), setup.pcfRadius,
                   int(setup.reservation), setup.fixedEntries, setup.subgroupSize, int(setup.hostDepthPyramid),
                   int(setup.hostProvider), setup.pcss.searchTaps, setup.pcss.filterTaps, setup.visibilityBits,
-                  setup.maxShadowAtlases);
+                  setup.maxShadowAtlases, int(setup.depthBias), int(setup.facedAwayIsDark));
     std::unique_ptr<Context>& context = contexts_[key];
     if (context == nullptr) {
         const Result made = Context::create(contextDesc(setup), context);

@@ -19,6 +19,8 @@ struct ContextSetup {
     std::uint32_t pcfRadius = 1;
     PcssTaps pcss = kPcssMedium;
     std::uint32_t visibilityBits = 8;
+    DepthBias depthBias = DepthBias::Oriented;
+    bool facedAwayIsDark = true;
     std::uint32_t maxShadowAtlases = 4;
     ListReservation reservation = ListReservation::Approximate;
     std::uint32_t fixedEntries = 0;

@@ -195,6 +195,8 @@ TEST_P(MisuseTest, BeginFrame) {
         {"atlas", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a.resize(1); }); }},
         {"subsurface", [](FrameDesc& f) { f.subsurfaceBiasMetres = -1; }},
         {"subsurface", [](FrameDesc& f) { f.subsurfaceBiasMetres = kNan; }},
+        {"depthStep", [](FrameDesc& f) { f.depthStep = -1e-6f; }},
+        {"depthStep", [](FrameDesc& f) { f.depthStep = kNan; }},
         {"maxShadowViews",
          [&](FrameDesc& f) {
              views = input.shadows->views;

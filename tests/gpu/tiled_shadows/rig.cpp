@@ -172,6 +172,7 @@ FrameDesc Rig::frameDesc(const FrameInput& input) {
     frame.atlases = atlasDescs_;
     frame.subsurfaceBiasMetres = input.subsurfaceBiasMetres;
     frame.patternPerFrame = input.patternPerFrame;
+    frame.depthStep = static_cast<float>(input.receivers.depthStep);
     frame.dropLightsFacedAway = input.dropLightsFacedAway;
     return frame;
 }

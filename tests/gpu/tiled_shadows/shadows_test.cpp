@@ -63,6 +63,82 @@ TEST_P(ShadowsTest, EveryFilter) {
     }
 }
 
+// The modes beside the default, with and without the rule for faces that look away.
+TEST_P(ShadowsTest, EveryDepthBias) {
+    RoomSetup setup{.seed = 14, .widthPx = 56, .heightPx = 40};
+    setup.lights.castingShare = 1.0;
+    setup.lights.suns = 1;
+    setup.lights.maxSourceRadius = 0.3;
+    FrameInput input = makeRoomFrame(setup);
+    struct Mode {
+        DepthBias bias;
+        bool facedAwayIsDark;
+        Filter filter;
+    };
+    constexpr Mode kModes[] = {{DepthBias::Oriented, true, Filter::Hard},
+                               {DepthBias::Oriented, false, Filter::Hard},
+                               {DepthBias::OrientedConstant, true, Filter::Hard},
+                               {DepthBias::OrientedConstant, false, Filter::Hard},
+                               {DepthBias::Unbiased, true, Filter::Hard},
+                               {DepthBias::Unbiased, false, Filter::Hard},
+                               {DepthBias::OrientedConstant, false, Filter::Pcss},
+                               {DepthBias::Unbiased, true, Filter::Pcss}};
+    std::vector<std::vector<std::uint32_t>> bytes;
+    for (const Mode& mode : kModes) {
+        SCOPED_TRACE("bias " + std::to_string(int(mode.bias)) + " faced away is dark: " +
+                     std::to_string(mode.facedAwayIsDark) + " filter " + std::to_string(int(mode.filter)));
+        Rig rig(device(),
+                {.filter = mode.filter, .depthBias = mode.bias, .facedAwayIsDark = mode.facedAwayIsDark},
+                viewDescFor(input));
+        ASSERT_TRUE(rig.ok());
+        const FrameResult result = rig.run(input);
+        const Checked checked = checkFrame(input, result);
+        // Without a bias, a surface that lies level in a map ties with itself.
+        EXPECT_LT(checked.shadows.ambiguousShare(), mode.bias == DepthBias::Unbiased ? 0.5 : 0.02);
+        EXPECT_GT(checked.shadows.slots, 10u);
+        std::printf("    bias %d %d: pairs %zu ambiguous %.4f\n", int(mode.bias), int(mode.facedAwayIsDark),
+                    checked.shadows.pairs, checked.shadows.ambiguousShare());
+        bytes.push_back(result.visibility);
+    }
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) EXPECT_NE(bytes[i], bytes[j]) << i << " and " << j << " do the same";
+}
+
+// No mode needs face normals that has no use for them.
+TEST_P(ShadowsTest, UnbiasedWithoutFaceNormals) {
+    RoomSetup setup{.seed = 15, .widthPx = 40, .heightPx = 32};
+    setup.lights.castingShare = 1.0;
+    FrameInput input = makeRoomFrame(setup);
+    const ContextSetup unbiased{.filter = Filter::Pcf, .depthBias = DepthBias::Unbiased, .facedAwayIsDark = false};
+    Rig rig(device(), unbiased, viewDescFor(input));
+    ASSERT_TRUE(rig.ok());
+    const FrameResult with = rig.run(input);
+    input.receivers.faceNormals.clear();
+    rig.dropImages();
+    const FrameResult without = rig.run(input);
+    const Checked checked = checkFrame(input, without);
+    EXPECT_LT(checked.shadows.ambiguousShare(), 0.5);
+    EXPECT_EQ(decodeFinalLists(with), decodeFinalLists(without));
+}
+
+// A depth image of few bits: the bias grows with its step, and standard Z makes that metres far away.
+TEST_P(ShadowsTest, CoarseDepthImages) {
+    RoomSetup setup{.seed = 16, .widthPx = 48, .heightPx = 40};
+    setup.lights.castingShare = 1.0;
+    FrameInput input = makeRoomFrame(setup);
+    const auto lit = [&](double step) {
+        input.receivers.depthStep = step;
+        Rig rig(device(), {.filter = Filter::Hard}, viewDescFor(input));
+        if (!rig.ok()) return std::size_t{0};
+        const Checked checked = checkFrame(input, rig.run(input));
+        EXPECT_LT(checked.shadows.ambiguousShare(), 0.02);
+        return checked.shadows.allLit;
+    };
+    const std::size_t fine = lit(0), d16 = lit(1.0 / 65535.0), coarse = lit(1e-2);
+    EXPECT_LE(fine, d16);
+    EXPECT_LT(d16, coarse);
+}
+
 // Any camera, any mixture of depths, any size of rectangle. GNOMON_FULL=1 looks at many more.
 TEST_P(ShadowsTest, RandomRooms) {
     const std::uint64_t seeds = fullRun() ? 200 : 3;

@@ -333,7 +333,7 @@ TEST(ShaderInterface, ConstantsAreKnown) {
     std::unique_ptr<Context> context;
     ASSERT_TRUE(Context::create(vulkan.desc(), context));
     const std::size_t given = context->specializationValues().size();
-    EXPECT_EQ(given, kSpecShadowAtlases + 1u);
+    EXPECT_EQ(given, kSpecFacedAwayIsDark + 1u);
     const std::uint32_t ofTheRenderer = kSpecFirstFree + 2;
     for (const ShaderLayout& shader : libraryShaders()) {
         for (std::uint32_t id : shader.constantIds) EXPECT_LT(id, given) << shader.name;
@@ -359,9 +359,11 @@ TEST(ShaderInterface, PipelinesGetTheConstants) {
     desc.pcss = {3, 5};
     desc.visibilityBits = 4;
     desc.maxShadowAtlases = 2;
+    desc.depthBias = DepthBias::Unbiased;
+    desc.facedAwayIsDark = false;
     std::unique_ptr<Context> context;
     ASSERT_TRUE(Context::create(desc, context));
-    std::vector<std::uint32_t> expected(9);
+    std::vector<std::uint32_t> expected(11);
     expected[kSpecSubgroupSize] = 64;
     expected[kSpecProvider] = kProviderHard;
     expected[kSpecListReservation] = kReserveAccurate;
@@ -371,6 +373,8 @@ TEST(ShaderInterface, PipelinesGetTheConstants) {
     expected[kSpecPcssFilterTaps] = 5;
     expected[kSpecVisibilityBits] = 4;
     expected[kSpecShadowAtlases] = 2;
+    expected[kSpecDepthBias] = kDepthBiasUnbiased;
+    expected[kSpecFacedAwayIsDark] = 0;
     EXPECT_TRUE(std::ranges::equal(context->specializationValues(), expected));
     ASSERT_EQ(vulkan.pipelines.size(), 6u);
     for (const FakeVulkan::Pipeline& pipeline : vulkan.pipelines) {

@@ -85,15 +85,23 @@ struct FilterCase {
     PcssTapCounts taps;
     std::uint32_t visibilityBits;
     double mostAmbiguous, mostLoose;  // shares of (pixel, light) pairs
+    BiasMode bias = BiasMode::Oriented;
+    bool facedAwayIsDark = true;
 };
 
 TEST(FloatErrors, PlainFloatsStayWithinTheMargins) {
     // Most of what is left are cameras with standard Z, whose far pixels are known to no better than the bias.
-    const FilterCase cases[] = {
-        {ShadowFilter::Hard, 1, {}, 8, 0.03, 0.03},       {ShadowFilter::Pcf, 1, {}, 8, 0.04, 0.03},
-        {ShadowFilter::Pcf, 2, {}, 8, 0.04, 0.03},        {ShadowFilter::Pcf, 3, {}, 8, 0.04, 0.03},
-        {ShadowFilter::Pcss, 1, {16, 24}, 8, 0.04, 0.03}, {ShadowFilter::Pcss, 1, {8, 12}, 8, 0.04, 0.03},
-        {ShadowFilter::Pcss, 1, {1, 1}, 4, 0.03, 0.03},   {ShadowFilter::Pcss, 1, {32, 64}, 4, 0.03, 0.03}};
+    const FilterCase cases[] = {{ShadowFilter::Hard, 1, {}, 8, 0.03, 0.03},
+                                {ShadowFilter::Pcf, 1, {}, 8, 0.04, 0.03},
+                                {ShadowFilter::Pcf, 2, {}, 8, 0.04, 0.03},
+                                {ShadowFilter::Pcf, 3, {}, 8, 0.04, 0.03},
+                                {ShadowFilter::Pcss, 1, {16, 24}, 8, 0.04, 0.03},
+                                {ShadowFilter::Pcss, 1, {8, 12}, 8, 0.04, 0.03},
+                                {ShadowFilter::Pcss, 1, {1, 1}, 4, 0.03, 0.03},
+                                {ShadowFilter::Pcss, 1, {32, 64}, 4, 0.03, 0.03},
+                                {ShadowFilter::Hard, 1, {}, 8, 0.03, 0.03, BiasMode::Oriented, false},
+                                {ShadowFilter::Pcf, 1, {}, 8, 0.1, 0.1, BiasMode::OrientedConstant, false},
+                                {ShadowFilter::Hard, 1, {}, 8, 0.5, 0.5, BiasMode::Unbiased, true}};
     for (const FilterCase& filter : cases) {
         Totals totals;
         for (std::uint64_t seed = 200; seed < 220; ++seed) {
@@ -102,6 +110,8 @@ TEST(FloatErrors, PlainFloatsStayWithinTheMargins) {
             frame.shadows.pcfRadius = filter.pcfRadius;
             frame.shadows.pcssTaps = filter.taps;
             frame.shadows.visibilityBits = filter.visibilityBits;
+            frame.shadows.bias = filter.bias;
+            frame.shadows.facedAwayIsDark = filter.facedAwayIsDark;
             frame.shadows.patternTurn = static_cast<std::uint32_t>(seed) * 2654435769u;
             compareFrame(frame, totals);
             if (HasFatalFailure()) return;

@@ -50,7 +50,8 @@ struct Plane {
     F2 px, tangent, slope;
     float z, ray, depth;
 };
-Plane planeIn(const View& v, F3 p, F3 n, float bias) {
+// `offPlane` below 0: no plane, one depth for all texels.
+Plane planeIn(const View& v, F3 p, F3 n, float bias, float offPlane) {
     Plane plane{};
     const bool parallel = v.model.orthographic;
     const float x = v.clip(0, p), y = v.clip(1, p), w = v.clip(3, p);
@@ -58,18 +59,21 @@ Plane planeIn(const View& v, F3 p, F3 n, float bias) {
     plane.px = v.px(x, y, w);
     const F2 ndc = {x / w, y / w};
     plane.tangent = parallel ? F2{0, 0} : F2{ndc.x * v.scale.x / v.perMetre.x, ndc.y * v.scale.y / v.perMetre.y};
+    const auto depthOf = [&](float z) { return parallel ? v.a + v.b * z : v.a + v.b / std::max(z, 1e-4f); };
     plane.ray = std::sqrt(1 + plane.tangent.x * plane.tangent.x + plane.tangent.y * plane.tangent.y);
+    plane.depth = depthOf(plane.z - bias);
+    const float toward = bias < 0 ? -1.0f : 1.0f;
+    if (offPlane < 0) return plane;
     const F3 axis = parallel ? v.r2 * (1.0f / v.b) : v.r3, across = cross(v.r0, v.r1);
     const F3 m = {dot(n, cross(v.r1, axis)), dot(n, cross(axis, v.r0)), dot(n, across)};
     float k = parallel ? m.z : m.x * ndc.x + m.y * ndc.y + m.z;
     k = raised(k, float(kLeastCosine) * length(across) * plane.ray);
     const float perNdc = parallel ? -v.b / k : v.b / (plane.z * k);
     plane.slope = {perNdc * m.x / v.scale.x, perNdc * m.y / v.scale.y};
-    const float nearer = plane.z - bias;
-    const float depth = parallel ? v.a + v.b * nearer : v.a + v.b / std::max(nearer, 1e-4f);
+    const float depth = depthOf(plane.z - (bias + toward * offPlane * length(across) / std::abs(k)));
     const float slack =
         1e-6f * (std::abs(v.a) + std::abs(depth - v.a)) + (std::abs(plane.slope.x) + std::abs(plane.slope.y)) * 0.0625f;
-    plane.depth = v.model.reversed ? depth + slack : depth - slack;
+    plane.depth = v.model.reversed ? depth + toward * slack : depth - toward * slack;
     return plane;
 }
 float depthAt(const View& v, const Plane& plane, F2 q, bool limited) {
@@ -206,12 +210,22 @@ float Sampler::pcss(const Pixel& pixel) const {
     return total / float(input.pcssTaps.filter);
 }
 
+bool faces(const LightModel& light, const Pixel& pixel, F3 p) {
+    const F3 to = light.type == LightType::Directional ? f3(-light.direction) : f3(light.position) - p;
+    return dot(f3(pixel.faceNormal), to) / length(to) > 0;
+}
+
 float sample(const LightModel& light, std::uint32_t index, const Pixel& pixel, F3 p, const ShadowInput& input) {
     const View v(input.views[light.firstShadowView + index]);
     if (!v.model.orthographic && v.clip(3, p) <= 0) return 1;
     float bias = float(light.biasMetres);
-    if (pixel.subsurface) bias = std::max(bias, float(input.subsurfaceBiasMetres));
-    const Plane plane = planeIn(v, p, f3(pixel.faceNormal), bias);
+    if (pixel.subsurface)
+        bias = std::max(bias, float(input.subsurfaceBiasMetres));
+    else if (!faces(light, pixel, p))
+        bias = -bias;
+    if (input.bias == BiasMode::Unbiased) bias = 0;
+    const float offPlane = input.bias == BiasMode::Oriented ? float(pixel.offPlaneMetres) : -1.0f;
+    const Plane plane = planeIn(v, p, f3(pixel.faceNormal), bias, offPlane);
     return Sampler{input, light, index, v, plane, input.filter == ShadowFilter::Pcss}.filter(pixel);
 }
 
@@ -246,8 +260,7 @@ float sun(const LightModel& light, const Pixel& pixel, F3 p, const ShadowInput& 
 
 float visibilityInFloats(const LightModel& light, const Pixel& pixel, F3 p, const ShadowInput& input) {
     const bool directional = light.type == LightType::Directional;
-    const F3 to = directional ? f3(-light.direction) : f3(light.position) - p;
-    if (!pixel.subsurface && dot(f3(pixel.faceNormal), to) / length(to) <= 0) return 0;
+    if (input.facedAwayIsDark && !pixel.subsurface && !faces(light, pixel, p)) return 0;
     if (directional) return sun(light, pixel, p, input);
     return sample(light, light.type == LightType::Point ? faceOf(p - f3(light.position)) : 0, pixel, p, input);
 }

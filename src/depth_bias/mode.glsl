@@ -1,0 +1,12 @@
+// How depths are compared: fixed when a pipeline is made.
+#ifndef GNOMON_DEPTH_BIAS_MODE_GLSL
+#define GNOMON_DEPTH_BIAS_MODE_GLSL
+
+#include "gpu_interface/numbers.h"
+
+layout(constant_id = 9) const uint kDepthBias = kDepthBiasOriented;
+layout(constant_id = 10) const uint kFacedAwayIsDark = 1;  // 0: pixels that look away from a light ask its shadowmap
+
+const bool kNeedsFaceNormals = kDepthBias != kDepthBiasUnbiased || kFacedAwayIsDark != 0u;
+
+#endif

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 #include <set>
 
@@ -27,21 +28,35 @@ struct BenchOptions {
     bool floor = false;
 };
 
-// The renderer remembers two finished frames, so frames go in pairs: submit two, wait, read both.
+// A variant's name is a way to shadow, as in "inline", or that and a depth bias, as in "deferred@hardware".
+struct Way {
+    renderer::ShadowMode mode = renderer::ShadowMode::Deferred;
+    std::string bias;  // empty: that of the settings
+};
+Way wayOf(const std::string& name) {
+    const std::size_t at = name.find('@');
+    Way way = {shadowModeOf(name.substr(0, at)), at == std::string::npos ? "" : name.substr(at + 1)};
+    renderer::RendererDesc unused;
+    if (at != std::string::npos) setBias(way.bias, unused);
+    return way;
+}
+
+// Renderers remember two finished frames, so frames of one renderer go in pairs: submit two, wait, read both. Before
+// another renderer's turn all is waited for: nothing orders their frames on the device.
 class PairedFrames {
 public:
-    explicit PairedFrames(renderer::Renderer& renderer) : renderer_(renderer) {}
-
-    void submit(const renderer::SceneCamera& camera, double timeSeconds, Variant& variant, bool counts) {
-        const std::uint64_t number = renderer_.renderFrame(camera, shadowModeOf(variant.name()), timeSeconds);
-        pending_.push_back({number, counts ? &variant : nullptr});
-        if (pending_.size() == 2) finish();
+    void submit(renderer::Renderer& renderer, renderer::ShadowMode mode, const renderer::SceneCamera& camera,
+                double timeSeconds, Variant* counting) {
+        if (renderer_ != &renderer || pending_.size() == 2) finish();
+        renderer_ = &renderer;
+        pending_.push_back({renderer.renderFrame(camera, mode, timeSeconds), counting});
     }
 
     void finish() {
-        renderer_.wait();
+        if (renderer_ == nullptr) return;
+        renderer_->wait();
         for (const Pending& frame : pending_)
-            if (frame.variant != nullptr) frame.variant->add(renderer_.report(frame.number));
+            if (frame.variant != nullptr) frame.variant->add(renderer_->report(frame.number));
         pending_.clear();
     }
 
@@ -50,21 +65,39 @@ private:
         std::uint64_t number;
         Variant* variant;  // null while warming up
     };
-    renderer::Renderer& renderer_;
+    renderer::Renderer* renderer_ = nullptr;
     std::vector<Pending> pending_;
 };
 
-std::vector<Variant> measure(renderer::Renderer& renderer, const Session& session, const BenchOptions& options) {
+// One per depth bias: it is fixed in the pipelines.
+using Renderers = std::map<std::string, std::unique_ptr<renderer::Renderer>>;
+Renderers makeRenderers(const Session& session, const std::vector<std::string>& variants) {
+    Renderers renderers;
+    for (const std::string& name : variants) {
+        const std::string bias = wayOf(name).bias;
+        renderer::RendererDesc desc = session.rendererDesc();
+        desc.inlineNeedsLists = true;
+        if (!bias.empty()) setBias(bias, desc);
+        std::unique_ptr<renderer::Renderer>& slot = renderers[bias];
+        if (slot == nullptr) slot = std::make_unique<renderer::Renderer>(session.device(), session.scene(), desc);
+    }
+    return renderers;
+}
+
+std::vector<Variant> measure(const Session& session, const BenchOptions& options) {
+    const Renderers renderers = makeRenderers(session, options.variants);
     std::vector<Variant> variants(options.variants.begin(), options.variants.end());
     const std::uint32_t rounds = options.warmUp + options.frames;
     FrameProgress progress(std::uint64_t{rounds} * variants.size());
-    PairedFrames frames(renderer);
+    PairedFrames frames;
     std::uint64_t frame = 0;
     for (std::uint32_t round = 0; round < rounds; ++round)
         for (Variant& variant : variants) {
             // Time goes on from frame to frame, so that shadowmaps age alike for all variants.
             const double time = frameTime(options.settings.time, frame++, options.framesPerSecond);
-            frames.submit(session.camera(), time, variant, round >= options.warmUp);
+            const Way way = wayOf(variant.name());
+            frames.submit(*renderers.at(way.bias), way.mode, session.camera(), time,
+                          round >= options.warmUp ? &variant : nullptr);
             progress.step();
         }
     frames.finish();
@@ -75,7 +108,7 @@ std::vector<Variant> measure(renderer::Renderer& renderer, const Session& sessio
 void checkLists(const std::vector<Variant>& variants) {
     for (const Variant& variant : variants) {
         const FrameStatistics& s = variant.last().report.statistics;
-        if (variant.name() != "deferred" && s.listOverflowTiles != 0)
+        if (wayOf(variant.name()).mode != renderer::ShadowMode::Deferred && s.listOverflowTiles != 0)
             throw UsageError(
                 fmt::format("The light lists have no room for {} tiles, which '{}' cannot shade while it is measured: "
                             "--list-entries {} would hold them.",
@@ -87,11 +120,7 @@ void benchWithin(const renderer::VulkanInstance& instance, const BenchOptions& o
     const Session session(instance, options.settings);
     if (session.device().timestampPeriodNs() == 0.0)
         throw std::runtime_error(fmt::format("'{}' has no timestamps to measure with.", session.device().info().name));
-    renderer::RendererDesc desc = session.rendererDesc();
-    desc.inlineNeedsLists = true;
-    renderer::Renderer renderer(session.device(), session.scene(), desc);
-    Measurement measured = {session, measure(renderer, session, options), std::nullopt, options.warmUp,
-                            options.framesPerSecond};
+    Measurement measured = {session, measure(session, options), std::nullopt, options.warmUp, options.framesPerSecond};
     checkLists(measured.variants);
     if (options.floor) measured.rates = renderer::measureDeviceRates(session.device());
     if (!options.json.empty()) {
@@ -107,7 +136,7 @@ int bench(const BenchOptions& options) {
     rendererDescOf(options.settings);  // refuses wrong settings before anything is started
     std::set<std::string> names;
     for (const std::string& name : options.variants) {
-        shadowModeOf(name);
+        wayOf(name);
         if (!names.insert(name).second) throw UsageError(fmt::format("--variants names '{}' twice.", name));
     }
     checkPreset(options.preset, options.variants);
@@ -132,7 +161,10 @@ void addBenchCommand(CLI::App& app, Work& chosen) {
     command->add_option("--fps", options->framesPerSecond, "Frames per second of the animations' time; 0: they stand")
         ->check(numberWithin(0.0, 1e6))
         ->capture_default_str();
-    command->add_option("--variants", options->variants, "Some of deferred,inline,off")
+    command
+        ->add_option(
+            "--variants", options->variants,
+            "Some of deferred, inline, off, each perhaps with a depth bias of its own, as in deferred@hardware")
         ->delimiter(',')
         ->capture_default_str();
     command->add_option("--preset", options->preset, "A table of the paper: sets scene, size, filter and variants")

@@ -81,14 +81,15 @@ struct Ratio {
     double ofMedians = 0.0, ofRounds = 0.0;
 };
 
-// Against inline, the paper's "before": what the comparison is for.
+// Against inline, the paper's "before", or else the first: what the comparison is for.
 std::vector<Ratio> ratiosOf(const std::vector<Variant>& variants) {
     std::vector<Ratio> ratios;
     const Variant* before = find(variants, "inline");
-    if (before == nullptr || spreadOf(before->compute()).median <= 0.0) return ratios;
+    if (before == nullptr) before = &variants.front();
+    if (spreadOf(before->compute()).median <= 0.0) return ratios;
     for (const Variant& variant : variants)
         if (&variant != before)
-            ratios.push_back({variant.name() + "/inline",
+            ratios.push_back({variant.name() + "/" + before->name(),
                               spreadOf(variant.compute()).median / spreadOf(before->compute()).median,
                               medianRatio(variant, *before)});
     return ratios;

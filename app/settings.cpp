@@ -1,7 +1,9 @@
 #include "app/settings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -128,8 +130,8 @@ void addSettings(CLI::App& command, Settings& s) {
     command
         .add_option("--bias", s.bias,
                     "Depth bias: oriented; paper (its listing 7, maps drawn with slope factor 1); hardware (maps drawn "
-                    "with factors 4096 and 2); none")
-        ->check(CLI::IsMember({"oriented", "paper", "hardware", "none"}))
+                    "with factors 4096 and 2); hardware-no-normals (and faces that look away ask the map too); none")
+        ->check(CLI::IsMember(biasNames()))
         ->capture_default_str();
     command.add_option("--hardware-bias", s.hardwareBias,
                        "CONSTANT,SLOPE[,CLAMP] to draw shadowmaps with, in place of what --bias has");
@@ -165,14 +167,21 @@ void addSettings(CLI::App& command, Settings& s) {
     command.add_flag("--unquantised", s.unquantised, "Inline shadows without the 8 bits of a visibility slot");
 }
 
+const std::vector<std::string>& biasNames() {
+    static const std::vector<std::string> names = {"oriented", "paper", "hardware", "hardware-no-normals", "none"};
+    return names;
+}
+
 void setBias(const std::string& name, renderer::RendererDesc& desc) {
+    if (std::ranges::find(biasNames(), name) == biasNames().end())
+        throw UsageError(fmt::format("There is no depth bias '{}': choose {}.", name, fmt::join(biasNames(), ", ")));
     desc.depthBias = name == "oriented" ? DepthBias::Oriented
                      : name == "paper"  ? DepthBias::OrientedConstant
                                         : DepthBias::Unbiased;
-    desc.facedAwayIsDark = name != "paper";
-    desc.shadowDrawing.bias = name == "paper"      ? kPaperBias
-                              : name == "hardware" ? kTypicalHardwareBias
-                                                   : renderer::HardwareBias{};
+    desc.facedAwayIsDark = name != "paper" && name != "hardware-no-normals";
+    desc.shadowDrawing.bias = name == "paper"                ? kPaperBias
+                              : name.starts_with("hardware") ? kTypicalHardwareBias
+                                                             : renderer::HardwareBias{};
 }
 
 renderer::RendererDesc rendererDescOf(const Settings& s) {

@@ -53,7 +53,8 @@ inline double frameTime(double firstSeconds, std::uint64_t frame, double framesP
     return framesPerSecond > 0.0 ? firstSeconds + static_cast<double>(frame) / framesPerSecond : firstSeconds;
 }
 
-/// Sets how depths are biased: "oriented", "paper", "hardware" or "none", each with its own way to draw.
+/// Sets how depths are biased, one of biasNames(), each with its own way to draw; throws UsageError otherwise.
+const std::vector<std::string>& biasNames();
 void setBias(const std::string& name, renderer::RendererDesc& desc);
 
 /// Throws UsageError on what no device could do.

@@ -22,8 +22,8 @@ void makeMaterials(Lab& lab) {
     SceneBuilder& b = lab.builder;
     Materials& m = lab.m;
     m.floor = pictured(b, "floor", paintGrid(512), 1.0f, 0.7f);
-    m.ground = texturedMaterial(b, "ground", paintClay(256, {0.52f, 0.50f, 0.47f}));
-    m.wall = texturedMaterial(b, "wall", paintPlaster(512, {0.80f, 0.79f, 0.76f}), 0.25f);
+    m.ground = texturedMaterial(b, "ground", paintClay(256, {0.70f, 0.67f, 0.62f}));
+    m.wall = texturedMaterial(b, "wall", paintPlaster(512, {0.77f, 0.76f, 0.73f}), 0.25f);
     m.mat = plainMaterial(b, "mat", {0.055f, 0.075f, 0.085f}, 0.85f);
     m.wood = texturedMaterial(b, "wood", paintPlanks(256, {0.66f, 0.50f, 0.34f}), 0.5f);
     m.white = plainMaterial(b, "white", glm::vec3(0.68f), 0.6f);
@@ -49,18 +49,18 @@ void makeMaterials(Lab& lab) {
 // A floor on a low plinth, two walls, and open ground towards the sun with a row of bollards down to the horizon.
 void addRoom(Lab& lab) {
     ShapeBuilder floor(lab.m.floor), ground(lab.m.ground), wall(lab.m.wall), white(lab.m.white);
-    floor.box({-7.7f, -0.2f, -4.5f}, {7.7f, 0.0f, 3.4f}, ShapeBuilder::kAll & ~ShapeBuilder::kBottom);
+    floor.box({-6.0f, -0.2f, -3.5f}, {6.2f, 0.0f, 2.75f}, ShapeBuilder::kAll & ~ShapeBuilder::kBottom);
     lab.place("floor", floor);
     ground.quad({-60, -0.2f, 60}, {60, -0.2f, 60}, {60, -0.2f, -60}, {-60, -0.2f, -60});
     lab.place("ground", ground);
     constexpr unsigned kStanding = ShapeBuilder::kAll & ~ShapeBuilder::kBottom;
-    wall.box({kWallX - 0.2f, 0.0f, kWallZ - 0.2f}, {7.0f, 2.9f, kWallZ}, kStanding);
-    wall.box({kWallX - 0.2f, 0.0f, kWallZ}, {kWallX, 2.9f, 0.2f}, kStanding & ~ShapeBuilder::kBack);
+    wall.box({kWallX - 0.2f, 0.0f, kWallZ - 0.2f}, {5.45f, 2.5f, kWallZ}, kStanding);
+    wall.box({kWallX - 0.2f, 0.0f, kWallZ}, {kWallX, 2.5f, 0.1f}, kStanding & ~ShapeBuilder::kBack);
     lab.place("walls", wall);
     const glm::vec2 bollard[] = {{0.12f, -0.2f}, {0.10f, 0.65f}, {0.06f, 0.72f}, {0.0f, 0.74f}};
     for (int i = 0; i < 11; ++i) {
         const float away = 2.0f * std::pow(1.36f, static_cast<float>(i));
-        white.setTransform(placed({7.4f + away, 0, -1.0f - 0.55f * away}));
+        white.setTransform(placed({5.6f + away, 0, -0.9f - 0.5f * away}));
         white.lathe(bollard, 24);
     }
     lab.place("bollards", white);
@@ -79,19 +79,19 @@ Scene build() {
     const auto camera = [&](const char* name, const glm::vec3& eye, const glm::vec3& target, float fieldOfView) {
         b.camera(name, kOrigin + eye, kOrigin + target, fieldOfView);
     };
-    camera("overview", {1.9f, 3.5f, 8.6f}, {-0.35f, 0.62f, -0.9f}, 0.74f);
-    camera("sand", kSand + glm::vec3(0.6f, 0.95f, 1.7f), kSand + glm::vec3(-0.15f, 0.1f, -0.1f), 0.75f);
-    camera("plates", kPlates + glm::vec3(0.5f, 1.2f, 2.6f), kPlates + glm::vec3(-0.1f, 0.25f, 0.1f), 0.75f);
-    camera("contacts", kContacts + glm::vec3(0.5f, 0.75f, 1.55f), kContacts + glm::vec3(-0.05f, 0.14f, 0.0f), 0.75f);
-    camera("lace", kCurtain + glm::vec3(1.5f, 1.5f, 2.6f), kCurtain + glm::vec3(-0.1f, 1.0f, -0.5f), 0.85f);
-    camera("cloth", kLaceCloth + glm::vec3(0.35f, 1.25f, 1.0f), kLaceCloth + glm::vec3(0, 0.62f, 0), 0.7f);
-    camera("ears", kBust + glm::vec3(0.25f, 1.5f, 1.15f), kBust + glm::vec3(0, 1.35f, 0), 0.6f);
-    camera("leaves", kPlant + glm::vec3(0.5f, 1.3f, 1.7f), kPlant + glm::vec3(0, 0.85f, 0), 0.7f);
-    camera("sheets", kSheets + glm::vec3(0.7f, 1.35f, 1.7f), kSheets + glm::vec3(-0.1f, 0.55f, -0.1f), 0.75f);
-    camera("grazing", kRamps + glm::vec3(0.9f, 1.0f, 2.7f), kRamps + glm::vec3(-0.3f, 0.35f, -0.6f), 0.8f);
-    b.scene.skyColour = {0.42f, 0.52f, 0.72f};
-    b.scene.groundColour = {0.20f, 0.17f, 0.14f};
-    b.scene.exposureEv100 = 2.2f;
+    camera("overview", {1.15f, 2.75f, 6.6f}, {-0.15f, 0.5f, -0.6f}, 0.72f);
+    camera("sand", kSand + glm::vec3(0.5f, 0.8f, 1.35f), kSand + glm::vec3(-0.15f, 0.08f, -0.1f), 0.75f);
+    camera("plates", kPlates + glm::vec3(0.45f, 0.95f, 2.0f), kPlates + glm::vec3(-0.1f, 0.18f, 0.05f), 0.72f);
+    camera("contacts", kContacts + glm::vec3(0.35f, 0.55f, 1.3f), kContacts + glm::vec3(0.0f, 0.15f, 0.0f), 0.72f);
+    camera("lace", kCurtain + glm::vec3(1.5f, 1.35f, 2.3f), kCurtain + glm::vec3(-0.1f, 0.95f, -0.5f), 0.85f);
+    camera("cloth", kLaceCloth + glm::vec3(0.3f, 1.1f, 0.9f), kLaceCloth + glm::vec3(0, 0.60f, 0), 0.7f);
+    camera("ears", kBust + glm::vec3(0.25f, 1.5f, 1.0f), kBust + glm::vec3(0, 1.33f, 0), 0.6f);
+    camera("leaves", kPlant + glm::vec3(0.45f, 1.2f, 1.45f), kPlant + glm::vec3(0, 0.8f, 0), 0.72f);
+    camera("sheets", kSheets + glm::vec3(0.7f, 1.25f, 1.5f), kSheets + glm::vec3(-0.12f, 0.55f, -0.1f), 0.75f);
+    camera("grazing", kRamps + glm::vec3(0.55f, 0.62f, 2.2f), kRamps + glm::vec3(-0.35f, 0.3f, -0.5f), 0.8f);
+    b.scene.skyColour = {0.26f, 0.36f, 0.60f};
+    b.scene.groundColour = {0.15f, 0.125f, 0.10f};
+    b.scene.exposureEv100 = 1.75f;
     return std::move(b.scene);
 }
 

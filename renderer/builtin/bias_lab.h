@@ -12,14 +12,14 @@ namespace gnomon::renderer::lab {
 
 inline constexpr glm::vec3 kOrigin{4096.0f, 0.0f, -4096.0f};
 
-inline constexpr float kWallZ = -4.2f, kWallX = -7.4f;  // the faces of the back and the left wall
+inline constexpr float kWallZ = -3.2f, kWallX = -5.7f;  // the faces of the back and the left wall
 inline constexpr float kMat = 0.005f;                   // thickness of the mats that stations stand on
 
 // Places of the stations on the floor.
-inline constexpr glm::vec3 kCurtain{-5.3f, 0, -2.5f}, kBust{-2.55f, 0, -2.3f}, kPlant{0.15f, 0, -2.75f},
-    kPlates{2.6f, 0, -2.0f}, kRamps{5.6f, 0, -1.9f};
-inline constexpr glm::vec3 kSheets{-4.5f, 0, 1.1f}, kContacts{-1.5f, 0, 1.3f}, kLaceCloth{1.2f, 0, 1.2f},
-    kSand{4.1f, 0, 1.1f};
+inline constexpr glm::vec3 kCurtain{-4.2f, 0, -1.9f}, kBust{-1.95f, 0, -1.7f}, kPlant{0.0f, 0, -2.1f},
+    kPlates{2.0f, 0, -1.35f}, kRamps{4.45f, 0, -1.7f};
+inline constexpr glm::vec3 kSheets{-3.3f, 0, 0.75f}, kContacts{-1.25f, 0, 0.95f}, kLaceCloth{0.75f, 0, 0.95f},
+    kSand{2.8f, 0, 0.95f};
 inline constexpr float kPedestal = 1.05f, kTable = 0.6f, kSandLevel = 0.10f;
 
 struct Materials {

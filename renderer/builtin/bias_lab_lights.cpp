@@ -90,12 +90,12 @@ void addStudioSpot(Lab& lab, const char* name, const Spot& spot, const glm::vec3
 }
 
 void addFarLights(Lab& lab) {
-    SceneLight& sun = addPoint(lab, "sun", {0, 0, 0}, {1.0f, 0.74f, 0.48f}, 16.0f, 0.0f, 0.00465f);
+    SceneLight& sun = addPoint(lab, "sun", {0, 0, 0}, {1.0f, 0.74f, 0.48f}, 22.0f, 0.0f, 0.00465f);
     sun.kind = LightKind::Directional;
     sun.position = glm::vec3(0.0f);
     // 9.2 degrees above the floor, 3.5 degrees off the back wall.
     sun.direction = glm::normalize(glm::vec3(-0.98f, -0.16f, -0.06f));
-    addSpot(lab, "far spot", {{-24.0f, 27.0f, 37.0f}, {0.2f, 0.0f, -0.2f}, 17000.0f, 0.13f, 75.0f, 0.05f}, kCool);
+    addSpot(lab, "far spot", {{-22.0f, 38.0f, -28.0f}, {0.2f, 0.0f, 0.4f}, 19000.0f, 0.125f, 75.0f, 0.05f}, kCool);
 }
 
 }  // namespace
@@ -104,35 +104,35 @@ void addLights(Lab& lab) {
     addFarLights(lab);
     addStudioSpot(
         lab, "curtain spot",
-        {kCurtain + glm::vec3(1.15f, 1.75f, 2.3f), kCurtain + glm::vec3(0, 1.0f, -0.2f), 42.0f, 0.55f, 7.0f, 0.01f},
+        {kCurtain + glm::vec3(1.15f, 1.75f, 2.3f), kCurtain + glm::vec3(0, 1.0f, -0.2f), 60.0f, 0.55f, 7.0f, 0.01f},
         kWarm);
     addStudioSpot(
         lab, "bust spot",
-        {kBust + glm::vec3(-0.75f, 1.75f, -1.25f), kBust + glm::vec3(0.02f, 1.38f, 0), 26.0f, 0.42f, 6.0f, 0.015f},
+        {kBust + glm::vec3(-0.75f, 1.75f, -1.25f), kBust + glm::vec3(0.02f, 1.38f, 0), 44.0f, 0.42f, 6.0f, 0.015f},
         kWhite);
     addStudioSpot(
         lab, "plate spot",
-        {kPlates + glm::vec3(1.75f, 2.3f, 1.1f), kPlates + glm::vec3(-0.1f, 0.1f, 0), 70.0f, 0.5f, 7.0f, 0.02f},
+        {kPlates + glm::vec3(1.75f, 2.3f, 1.1f), kPlates + glm::vec3(-0.1f, 0.1f, 0), 85.0f, 0.5f, 7.0f, 0.02f},
         kWhite);
     addStudioSpot(
         lab, "cloth spot",
-        {kLaceCloth + glm::vec3(-0.75f, 2.1f, -1.1f), kLaceCloth + glm::vec3(0, kTable, 0), 38.0f, 0.42f, 6.0f, 0.01f},
+        {kLaceCloth + glm::vec3(-0.75f, 2.1f, -1.1f), kLaceCloth + glm::vec3(0, kTable, 0), 52.0f, 0.42f, 6.0f, 0.01f},
         kWarm);
 
     const glm::vec3 plant = kPlant + glm::vec3(-0.35f, 1.15f, -0.75f);
-    addPoint(lab, "plant lamp", plant, kWarm, 7.0f, 4.5f, 0.02f);
+    addPoint(lab, "plant lamp", plant, kWarm, 11.0f, 4.5f, 0.02f);
     addDeskLamp(lab, plant, {plant.x - 0.25f, 0.0f, plant.z - 0.2f});
     const glm::vec3 sand = kSand + glm::vec3(-0.62f, kSandLevel + 0.30f, -0.42f);
-    addPoint(lab, "sand lamp", sand, kWarm, 2.6f, 4.0f, 0.008f);
+    addPoint(lab, "sand lamp", sand, kWarm, 3.6f, 4.0f, 0.008f);
     addDeskLamp(lab, sand, {sand.x - 0.02f, 0.0f, sand.z - 0.45f});
-    const glm::vec3 wall = glm::vec3(1.75f, 1.62f, kWallZ + 0.30f);
-    addPoint(lab, "wall lamp", wall, kWarm, 3.2f, 5.0f, 0.01f);
+    const glm::vec3 wall = glm::vec3(1.45f, 1.48f, kWallZ + 0.30f);
+    addPoint(lab, "wall lamp", wall, kWarm, 4.2f, 5.0f, 0.01f);
     addDeskLamp(lab, wall, {wall.x - 0.3f, 0.0f, wall.z + 0.1f});
     const glm::vec3 contact = kContacts + glm::vec3(-0.42f, 0.33f, 0.10f);
-    addPoint(lab, "contact lamp", contact, kWhite, 2.2f, 3.5f, 0.006f);
+    addPoint(lab, "contact lamp", contact, kWhite, 4.0f, 3.5f, 0.006f);
     addDeskLamp(lab, contact, {contact.x - 0.1f, kMat, contact.z - 0.22f});
     const glm::vec3 cards = kSheets + glm::vec3(-0.1f, kTable + 0.42f, -0.28f);
-    addPoint(lab, "card lamp", cards, kWhite, 3.2f, 4.0f, 0.012f);
+    addPoint(lab, "card lamp", cards, kWhite, 4.4f, 4.0f, 0.012f);
     addDeskLamp(lab, cards, {cards.x + 0.18f, kTable, cards.z - 0.06f});
 }
 

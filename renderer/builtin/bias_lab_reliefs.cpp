@@ -94,21 +94,21 @@ void addRamps(Lab& lab) {
 // Slats between sun and lab, which lay stripes over the floor, and panels of every thickness on the grazed back wall.
 void addGrazedWall(Lab& lab) {
     ShapeBuilder slats(lab.m.white), panels(lab.m.accent), battens(lab.m.wood);
-    for (int i = 0; i < 7; ++i) {
-        slats.setTransform(placed({7.05f, 0, -3.7f + 0.42f * static_cast<float>(i)}, 0.0f));
-        slats.box({-0.02f, 0, -0.09f}, {0.02f, 2.5f, 0.09f}, kStanding);
+    for (int i = 0; i < 6; ++i) {
+        slats.setTransform(placed({5.75f, 0, -2.95f + 0.36f * static_cast<float>(i)}));
+        slats.box({-0.02f, 0, -0.09f}, {0.02f, 2.2f, 0.09f}, kStanding);
     }
-    slats.setTransform(placed({7.05f, 2.5f, -2.44f}));
-    slats.box({-0.05f, 0, -1.45f}, {0.05f, 0.06f, 1.45f});
+    slats.setTransform(placed({5.75f, 2.2f, -2.05f}));
+    slats.box({-0.05f, 0, -1.1f}, {0.05f, 0.06f, 1.1f});
     lab.place("slats", slats);
     for (std::size_t i = 0; i < kThicknesses.size(); ++i) {
-        const float x = 2.2f + 0.75f * static_cast<float>(i);
-        panels.box({x, 1.25f, kWallZ}, {x + 0.5f, 1.95f, kWallZ + kThicknesses[i]},
+        const float x = 1.75f + 0.66f * static_cast<float>(i);
+        panels.box({x, 1.1f, kWallZ}, {x + 0.44f, 1.72f, kWallZ + kThicknesses[i]},
                    ShapeBuilder::kAll & ~ShapeBuilder::kBack);
     }
     lab.place("panels", panels);
-    battens.box({-7.4f, 2.62f, kWallZ}, {7.0f, 2.66f, kWallZ + 0.012f}, ShapeBuilder::kAll & ~ShapeBuilder::kBack);
-    battens.box({-7.4f, 0.0f, kWallZ}, {7.0f, 0.08f, kWallZ + 0.012f},
+    battens.box({kWallX, 2.26f, kWallZ}, {5.45f, 2.30f, kWallZ + 0.012f}, ShapeBuilder::kAll & ~ShapeBuilder::kBack);
+    battens.box({kWallX, 0.0f, kWallZ}, {5.45f, 0.08f, kWallZ + 0.012f},
                 kStanding & ~(ShapeBuilder::kBack | ShapeBuilder::kLeft));
     lab.place("battens", battens);
 }

@@ -52,38 +52,36 @@ Image paintGrid(std::uint32_t size) {
     });
 }
 
-// A net of threads with a flower in the middle of every repeat and another at its corners, and picots between them.
+// A net of threads with a flower in the middle of every repeat, a smaller one at its corners, and picots around them.
 Image paintLace(std::uint32_t size) {
-    const auto thread = [](float distance, float half) { return half - std::abs(distance); };
-    const auto flower = [&](float x, float y, float radius) {
+    constexpr float kMesh = 18.0f, kThread = 0.0042f;  // of a repeat of 0.4 m: meshes of 16 mm, threads of 3.4 mm
+    struct Flower {
+        float inside, solid;  // positive within its outline, and where it is not pierced
+    };
+    const auto flower = [](float x, float y, float radius) {
         const float r = std::sqrt(x * x + y * y) / radius, a = std::atan2(y, x);
-        const float petals = 0.72f + 0.28f * std::cos(8.0f * a);
-        const float rim = 0.055f - std::abs(r - petals), heart = 0.16f - r;
-        const float rays = r > 0.2f && r < petals ? 0.035f - 0.5f * r * std::abs(std::sin(4.0f * a)) / 4.0f : -1.0f;
-        const float ring = 0.04f - std::abs(r - 0.36f);
-        return radius * std::max({rim, heart, ring, rays});
+        const float outline = 0.74f + 0.26f * std::cos(8.0f * a) - r;
+        const float sector = a - std::round(a * 4.0f / kPi) * kPi / 4.0f;  // from the middle of the petal
+        const float px = r * std::cos(sector) - 0.68f, py = r * std::sin(sector);
+        const float petalHole = 0.15f - std::sqrt(0.45f * px * px + 3.0f * py * py);
+        const float heart = 0.055f - std::abs(r - 0.27f);
+        const float spokes = 0.024f - std::abs(r * std::sin(sector));
+        const float core = r < 0.27f ? std::max(spokes, 0.07f - r) : outline;
+        const float bands = r < 0.40f ? std::max(heart, core) : outline;
+        return Flower{radius * outline, radius * std::min({bands, outline, -petalHole})};
     };
     return painted(size, [=](float u, float v) {
-        const float du = u - 0.5f, dv = v - 0.5f;
-        const float cu = u - std::round(u), cv = v - std::round(v);
-        // Threads 1.6 mm wide on a diamond mesh of 17 mm, for a repeat of 0.4 m.
-        constexpr float kMesh = 24.0f;
-        const float s = (u + v) * kMesh, t = (u - v) * kMesh;
-        float solid =
-            std::max(thread((s - std::round(s)) / kMesh, 0.0028f), thread((t - std::round(t)) / kMesh, 0.0028f));
-        const float large = flower(du, dv, 0.34f), small = flower(cu, cv, 0.2f);
-        const auto within = [](float x, float y, float radius) {
-            return std::sqrt(x * x + y * y) < radius * (0.72f + 0.28f * std::cos(8.0f * std::atan2(y, x)));
-        };
-        if (within(du, dv, 0.34f) || within(cu, cv, 0.2f)) solid = -1.0f;  // flowers have threads of their own
-        solid = std::max({solid, large, small});
-        for (int k = 0; k < 8; ++k) {  // picots around the large flower
+        const auto thread = [=](float w) { return kThread - std::abs(w - std::round(w)) / (1.41421356f * kMesh); };
+        const Flower large = flower(u - 0.5f, v - 0.5f, 0.36f),
+                     small = flower(u - std::round(u), v - std::round(v), 0.21f);
+        float solid = std::max(thread((u + v) * kMesh), thread((u - v) * kMesh));
+        if (large.inside > 0.0f || small.inside > 0.0f) solid = std::max(large.solid, small.solid);
+        for (int k = 0; k < 8; ++k) {
             const float a = kPi * (static_cast<float>(k) + 0.5f) / 4.0f;
-            const float x = du - 0.33f * std::cos(a), y = dv - 0.33f * std::sin(a);
-            solid = std::max(solid, 0.024f - std::sqrt(x * x + y * y));
+            const float x = u - 0.5f - 0.34f * std::cos(a), y = v - 0.5f - 0.34f * std::sin(a);
+            solid = std::max(solid, 0.02f - std::sqrt(x * x + y * y));
         }
-        const float alpha = smooth(-0.0012f, 0.0012f, solid);
-        return glm::vec4(0.90f, 0.87f, 0.80f, alpha);
+        return glm::vec4(0.90f, 0.87f, 0.80f, smooth(-0.0012f, 0.0012f, solid));
     });
 }
 

@@ -44,8 +44,8 @@ Grid sampled(const SolidField& solid, const Bounds& box, float cell) {
     return grid;
 }
 
-// The mean of the places where the surface crosses the cell's edges, in cells from its low corner; kept off the faces,
-// so that no two vertices of a quad meet. Empty where it crosses none.
+// The mean of the places where the surface crosses the cell's edges, in cells from its low corner. Empty where it
+// crosses none.
 std::optional<glm::vec3> vertexIn(const Grid& grid, const Place& cell) {
     glm::vec3 sum(0.0f);
     int crossings = 0;
@@ -64,17 +64,39 @@ std::optional<glm::vec3> vertexIn(const Grid& grid, const Place& cell) {
         }
     }
     if (crossings == 0) return std::nullopt;
-    return glm::clamp(sum / static_cast<float>(crossings), 0.1f, 0.9f);
+    return sum / static_cast<float>(crossings);
 }
 
-void addVertices(Grid& grid, Primitive& mesh) {
+glm::vec3 gradient(const SolidField& solid, const glm::vec3& p, float step) {
+    glm::vec3 slope(0.0f);
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::vec3 by(0.0f);
+        by[axis] = step;
+        slope[axis] = (solid(p + by) - solid(p - by)) / (2.0f * step);
+    }
+    return slope;
+}
+
+// One step of Newton's onto the surface, kept within the cell and off its faces: no two vertices of a quad meet.
+glm::vec3 settled(const SolidField& solid, const glm::vec3& mean, const glm::vec3& cellLow, float cell) {
+    const glm::vec3 slope = gradient(solid, mean, 0.25f * cell);
+    const float steep = glm::dot(slope, slope);
+    const glm::vec3 onSurface = steep > 0.0f ? mean - slope * (solid(mean) / steep) : mean;
+    return glm::clamp(onSurface, cellLow + 0.04f * cell, cellLow + 0.96f * cell);
+}
+
+void addVertices(const SolidField& solid, Grid& grid, Primitive& mesh) {
     for (std::uint32_t z = 0; z + 1 < grid.samples[2]; ++z) {
         for (std::uint32_t y = 0; y + 1 < grid.samples[1]; ++y) {
             for (std::uint32_t x = 0; x + 1 < grid.samples[0]; ++x) {
                 const std::optional<glm::vec3> at = vertexIn(grid, {x, y, z});
                 if (!at) continue;
                 grid.vertexOfCell[grid.index({x, y, z})] = static_cast<std::uint32_t>(mesh.positions.size());
-                mesh.positions.push_back(grid.origin + grid.cell * (glm::vec3(x, y, z) + *at));
+                const glm::vec3 low = grid.origin + grid.cell * glm::vec3(x, y, z);
+                const glm::vec3 vertex = settled(solid, low + grid.cell * *at, low, grid.cell);
+                mesh.positions.push_back(vertex);
+                const glm::vec3 slope = gradient(solid, vertex, 0.5f * grid.cell);
+                mesh.normals.push_back(glm::length(slope) > 0.0f ? glm::normalize(slope) : glm::vec3(0, 1, 0));
             }
         }
     }
@@ -114,17 +136,13 @@ void addQuads(const Grid& grid, Primitive& mesh) {
     }
 }
 
-// The mean of the faces around a vertex; corners that a face turns far away from it are given the face's own.
-void addNormals(Primitive& mesh) {
-    constexpr float kSharpCosine = 0.5f;  // 60 degrees: seams between parts
+// Corners whose face is turned far away from the vertex' normal are given the face's own.
+void sharpenSeams(Primitive& mesh) {
+    constexpr float kSharpCosine = 0.5f;  // 60 degrees
     const auto faceAt = [&](std::size_t i) {
         const glm::vec3 a = mesh.positions[mesh.indices[i]];
         return glm::cross(mesh.positions[mesh.indices[i + 1]] - a, mesh.positions[mesh.indices[i + 2]] - a);
     };
-    mesh.normals.assign(mesh.positions.size(), glm::vec3(0.0f));
-    for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
-        for (std::size_t k = 0; k < 3; ++k) mesh.normals[mesh.indices[i + k]] += faceAt(i);  // weighted by area
-    for (glm::vec3& n : mesh.normals) n = glm::length(n) > 0.0f ? glm::normalize(n) : glm::vec3(0, 1, 0);
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
         const glm::vec3 face = glm::normalize(faceAt(i));
         for (std::size_t k = 0; k < 3; ++k) {
@@ -166,13 +184,14 @@ Primitive surfaceOf(const SolidField& solid, const Bounds& box, float cellMetres
     Grid grid = sampled(solid, box, cellMetres);
     Primitive mesh;
     mesh.material = material;
-    addVertices(grid, mesh);
+    addVertices(solid, grid, mesh);
     addQuads(grid, mesh);
     for (glm::vec3& p : mesh.positions) {
         mesh.texcoords[0].emplace_back(p.x, -p.y);
         p = glm::vec3(primitiveFromSolid * glm::vec4(p, 1.0f));
     }
-    addNormals(mesh);
+    for (glm::vec3& n : mesh.normals) n = glm::normalize(glm::mat3(primitiveFromSolid) * n);
+    sharpenSeams(mesh);
     for (const std::uint32_t i : mesh.indices) mesh.bounds.add(mesh.positions[i]);
     return mesh;
 }

@@ -2,7 +2,7 @@
 #include "renderer/builtin/courtyard_figure.h"
 
 #include "renderer/builtin/foliage_textures.h"
-#include "renderer/builtin/procedural_textures.h"
+#include "renderer/builtin/material_builders.h"
 #include "renderer/builtin/scenes.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -10,34 +10,6 @@
 namespace gnomon::renderer {
 namespace courtyard {
 namespace {
-
-std::uint32_t textured(SceneBuilder& builder, const char* name, PaintedTexture painted, float normalScale = 1.0f) {
-    Material material;
-    material.name = name;
-    material.metallic = 0.0f;
-    material.normalScale = normalScale;
-    material.roughness = 1.0f;
-    const auto use = [&](Image& image) {
-        TextureUse texture;
-        texture.image = builder.image(std::move(image));
-        texture.uvTransform = glm::mat2(1.0f / painted.metres);
-        return texture;
-    };
-    material.baseColourTexture = use(painted.colour);
-    material.normalTexture = use(painted.normal);
-    material.metallicRoughnessTexture = use(painted.metallicRoughness);
-    return builder.material(std::move(material));
-}
-
-std::uint32_t plain(SceneBuilder& builder, const char* name, const glm::vec3& colour, float roughness,
-                    float metallic = 0.0f) {
-    Material material;
-    material.name = name;
-    material.baseColour = glm::vec4(colour, 1.0f);
-    material.roughness = roughness;
-    material.metallic = metallic;
-    return builder.material(std::move(material));
-}
 
 // Seen from both sides, and lit through.
 std::uint32_t foliage(SceneBuilder& builder, const char* name, Image image, float roughness, bool thin = true) {
@@ -57,18 +29,18 @@ std::uint32_t foliage(SceneBuilder& builder, const char* name, Image image, floa
 void makeLivingMaterials(Parts& parts) {
     SceneBuilder& b = parts.builder;
     Materials& m = parts.materials;
-    m.soil = textured(b, "soil", paintClay(128, {0.27f, 0.20f, 0.14f}));
-    m.bark = textured(b, "bark", paintPlanks(256, {0.44f, 0.36f, 0.27f}));
+    m.soil = texturedMaterial(b, "soil", paintClay(128, {0.27f, 0.20f, 0.14f}));
+    m.bark = texturedMaterial(b, "bark", paintPlanks(256, {0.44f, 0.36f, 0.27f}));
     m.leaves = foliage(b, "leaves", paintBroadLeaves(512), 0.5f);
     m.ivy = foliage(b, "ivy", paintIvy(512), 0.55f);
     m.blossom = foliage(b, "blossom", paintBlossom(512), 0.75f);
     m.frond = foliage(b, "frond", paintFrond(512), 0.5f);
-    m.orange = plain(b, "orange", {0.85f, 0.30f, 0.03f}, 0.5f);
-    m.straw = textured(b, "straw", paintStripes(128, {0.80f, 0.66f, 0.38f}, {0.74f, 0.59f, 0.33f}));
-    m.fur = plain(b, "fur", {0.42f, 0.19f, 0.06f}, 0.9f);
-    m.feather = plain(b, "feather", {0.03f, 0.035f, 0.06f}, 0.6f);
+    m.orange = plainMaterial(b, "orange", {0.85f, 0.30f, 0.03f}, 0.5f);
+    m.straw = texturedMaterial(b, "straw", paintStripes(128, {0.80f, 0.66f, 0.38f}, {0.74f, 0.59f, 0.33f}));
+    m.fur = plainMaterial(b, "fur", {0.42f, 0.19f, 0.06f}, 0.9f);
+    m.feather = plainMaterial(b, "feather", {0.03f, 0.035f, 0.06f}, 0.6f);
     b.scene.materials[m.feather].doubleSided = true;
-    m.sheetIron = plain(b, "sheet iron", {0.06f, 0.06f, 0.065f}, 0.5f, 0.5f);
+    m.sheetIron = plainMaterial(b, "sheet iron", {0.06f, 0.06f, 0.065f}, 0.5f, 0.5f);
     b.scene.materials[m.sheetIron].doubleSided = true;
     m.pierced = foliage(b, "pierced brass", paintStarCutouts(512, {0.80f, 0.60f, 0.30f}), 0.4f, false);
     b.scene.materials[m.pierced].alphaCutoff = 0.5f;
@@ -76,52 +48,52 @@ void makeLivingMaterials(Parts& parts) {
     const glm::vec3 wear[] = {{0.17f, 0.22f, 0.40f}, {0.66f, 0.16f, 0.13f}, {0.62f, 0.52f, 0.36f},
                               {0.86f, 0.80f, 0.68f}, {0.28f, 0.36f, 0.26f}, {0.36f, 0.26f, 0.20f}};
     for (std::size_t i = 0; i < m.wear.size(); ++i)
-        m.wear[i] = textured(b, "felted cloth", paintClay(256, wear[i]), 0.12f);
+        m.wear[i] = texturedMaterial(b, "felted cloth", paintClay(256, wear[i]), 0.12f);
     const glm::vec3 skin[] = {{0.62f, 0.38f, 0.26f}, {0.40f, 0.22f, 0.14f}, {0.52f, 0.30f, 0.20f}};
     const glm::vec3 hair[] = {{0.09f, 0.05f, 0.03f}, {0.03f, 0.025f, 0.022f}, {0.55f, 0.53f, 0.50f}};
     const std::uint32_t glow = b.image(paintPaperGlow(128));
     const glm::vec3 paper[] = {{0.95f, 0.80f, 0.50f}, {0.95f, 0.45f, 0.40f}, {0.50f, 0.85f, 0.85f}};
-    m.candle = plain(b, "wax", {0.80f, 0.72f, 0.55f}, 0.6f);
-    m.leather = plain(b, "leather", {0.06f, 0.035f, 0.02f}, 0.5f);
+    m.candle = plainMaterial(b, "wax", {0.80f, 0.72f, 0.55f}, 0.6f);
+    m.leather = plainMaterial(b, "leather", {0.06f, 0.035f, 0.02f}, 0.5f);
     for (std::size_t i = 0; i < 3; ++i) {
-        m.paper[i] = plain(b, "paper", paper[i], 0.9f);
+        m.paper[i] = plainMaterial(b, "paper", paper[i], 0.9f);
         Material& lit = b.scene.materials[m.paper[i]];
         lit.doubleSided = true;
         lit.emissive = (parts.hour == Hour::Day ? 26.0f : 1.9f) * paper[i] * paper[i];
         lit.emissiveTexture.image = glow;
         lit.emissiveTexture.uvTransform = glm::mat2(1.0f, 0.0f, 0.0f, 2.0f);
-        m.skin[i] = plain(b, "skin", skin[i], 0.55f);
-        m.hair[i] = plain(b, "hair", hair[i], 0.6f);
+        m.skin[i] = plainMaterial(b, "skin", skin[i], 0.55f);
+        m.hair[i] = plainMaterial(b, "hair", hair[i], 0.6f);
     }
 }
 
 void makeMaterials(Parts& parts) {
     SceneBuilder& b = parts.builder;
     Materials& m = parts.materials;
-    m.stone = textured(b, "stone", paintBlocks(512, 2.0f, 4, 6, {0.74f, 0.68f, 0.58f}));
-    m.trim = textured(b, "trim", paintPlaster(256, {0.80f, 0.75f, 0.66f}), 0.6f);
-    m.plaster = textured(b, "plaster", paintPlaster(512, {0.80f, 0.62f, 0.47f}));
-    m.cobbles = textured(b, "cobbles", paintCobbles(512));
-    m.flags = textured(b, "flagstones", paintBlocks(512, 2.4f, 3, 4, {0.56f, 0.53f, 0.50f}));
-    m.wood = textured(b, "wood", paintPlanks(256, {0.58f, 0.41f, 0.27f}));
-    m.darkWood = textured(b, "dark wood", paintPlanks(256, {0.36f, 0.25f, 0.18f}));
-    m.clay = textured(b, "clay", paintClay(256, {0.68f, 0.36f, 0.24f}));
-    m.tiles = textured(b, "roof tiles", paintClay(256, {0.60f, 0.33f, 0.23f}));
+    m.stone = texturedMaterial(b, "stone", paintBlocks(512, 2.0f, 4, 6, {0.74f, 0.68f, 0.58f}));
+    m.trim = texturedMaterial(b, "trim", paintPlaster(256, {0.80f, 0.75f, 0.66f}), 0.6f);
+    m.plaster = texturedMaterial(b, "plaster", paintPlaster(512, {0.80f, 0.62f, 0.47f}));
+    m.cobbles = texturedMaterial(b, "cobbles", paintCobbles(512));
+    m.flags = texturedMaterial(b, "flagstones", paintBlocks(512, 2.4f, 3, 4, {0.56f, 0.53f, 0.50f}));
+    m.wood = texturedMaterial(b, "wood", paintPlanks(256, {0.58f, 0.41f, 0.27f}));
+    m.darkWood = texturedMaterial(b, "dark wood", paintPlanks(256, {0.36f, 0.25f, 0.18f}));
+    m.clay = texturedMaterial(b, "clay", paintClay(256, {0.68f, 0.36f, 0.24f}));
+    m.tiles = texturedMaterial(b, "roof tiles", paintClay(256, {0.60f, 0.33f, 0.23f}));
     b.scene.materials[m.tiles].doubleSided = true;  // open below
-    m.iron = plain(b, "iron", {0.05f, 0.05f, 0.055f}, 0.45f, 0.6f);
-    m.rope = plain(b, "rope", {0.22f, 0.16f, 0.10f}, 0.95f);
-    m.bronze = plain(b, "bronze", {0.30f, 0.36f, 0.27f}, 0.4f, 0.5f);
-    m.water = plain(b, "water", {0.015f, 0.05f, 0.06f}, 0.08f);
-    m.spray = plain(b, "spray", {0.55f, 0.66f, 0.70f}, 0.15f);
-    m.glow = plain(b, "flame", {0.0f, 0.0f, 0.0f}, 1.0f);
+    m.iron = plainMaterial(b, "iron", {0.05f, 0.05f, 0.055f}, 0.45f, 0.6f);
+    m.rope = plainMaterial(b, "rope", {0.22f, 0.16f, 0.10f}, 0.95f);
+    m.bronze = plainMaterial(b, "bronze", {0.30f, 0.36f, 0.27f}, 0.4f, 0.5f);
+    m.water = plainMaterial(b, "water", {0.015f, 0.05f, 0.06f}, 0.08f);
+    m.spray = plainMaterial(b, "spray", {0.55f, 0.66f, 0.70f}, 0.15f);
+    m.glow = plainMaterial(b, "flame", {0.0f, 0.0f, 0.0f}, 1.0f);
     b.scene.materials[m.glow].emissive = glm::vec3(1.0f, 0.56f, 0.2f) * (parts.hour == Hour::Day ? 200.0f : 12.0f);
-    m.coolGlow = plain(b, "cool lamp", {0.0f, 0.0f, 0.0f}, 1.0f);
+    m.coolGlow = plainMaterial(b, "cool lamp", {0.0f, 0.0f, 0.0f}, 1.0f);
     b.scene.materials[m.coolGlow].emissive = glm::vec3(0.35f, 0.65f, 1.0f) * 10.0f;
     const glm::vec3 cream(0.86f, 0.80f, 0.68f);
-    m.cloth = {textured(b, "cloth red", paintStripes(256, {0.66f, 0.10f, 0.09f}, cream)),
-               textured(b, "cloth blue", paintStripes(256, {0.10f, 0.22f, 0.50f}, cream)),
-               textured(b, "cloth ochre", paintStripes(256, {0.78f, 0.50f, 0.12f}, {0.45f, 0.12f, 0.10f})),
-               textured(b, "cloth green", paintStripes(256, {0.12f, 0.36f, 0.24f}, cream))};
+    m.cloth = {texturedMaterial(b, "cloth red", paintStripes(256, {0.66f, 0.10f, 0.09f}, cream)),
+               texturedMaterial(b, "cloth blue", paintStripes(256, {0.10f, 0.22f, 0.50f}, cream)),
+               texturedMaterial(b, "cloth ochre", paintStripes(256, {0.78f, 0.50f, 0.12f}, {0.45f, 0.12f, 0.10f})),
+               texturedMaterial(b, "cloth green", paintStripes(256, {0.12f, 0.36f, 0.24f}, cream))};
     for (const std::uint32_t cloth : m.cloth)
         b.scene.materials[cloth].doubleSided = b.scene.materials[cloth].subsurface = true;
 }

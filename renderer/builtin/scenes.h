@@ -9,6 +9,8 @@ Scene makeCourtyardNight();
 Scene makeCourtyardDay();
 Scene makeCourtyardBench();
 
+Scene makeBiasLab();
+
 Scene makeEmptyPlane();
 Scene makeSphereOnPlane();
 Scene makeBoxes();

@@ -1,5 +1,6 @@
 // Small scenes for tests: plain colours, few triangles, known distances.
 
+#include "renderer/builtin/material_builders.h"
 #include "renderer/builtin/random.h"
 #include "renderer/builtin/scenes.h"
 #include "renderer/builtin/shapes.h"
@@ -8,15 +9,6 @@
 
 namespace gnomon::renderer {
 namespace {
-
-std::uint32_t plain(SceneBuilder& builder, const char* name, const glm::vec3& colour) {
-    Material material;
-    material.name = name;
-    material.baseColour = glm::vec4(colour, 1.0f);
-    material.metallic = 0.0f;
-    material.roughness = 0.8f;
-    return builder.material(std::move(material));
-}
 
 void floorPlane(SceneBuilder& builder, std::uint32_t material, float half) {
     ShapeBuilder plane(material);
@@ -56,7 +48,7 @@ Scene finished(SceneBuilder& builder, float ev100 = 2.0f) {
 
 Scene makeEmptyPlane() {
     SceneBuilder b("empty-plane");
-    floorPlane(b, plain(b, "grey", glm::vec3(0.5f)), 10.0f);
+    floorPlane(b, plainMaterial(b, "grey", glm::vec3(0.5f)), 10.0f);
     addSpot(b, {0, 4, 0}, {0, 0, 0}, glm::vec3(1.0f), 100.0f, 12.0f, 0.6f);
     b.camera("default", {0, 3, 8}, {0, 0, 0}, 0.9f);
     return finished(b);
@@ -64,8 +56,8 @@ Scene makeEmptyPlane() {
 
 Scene makeSphereOnPlane() {
     SceneBuilder b("sphere-on-plane");
-    floorPlane(b, plain(b, "grey", glm::vec3(0.5f)), 10.0f);
-    ShapeBuilder ball(plain(b, "red", {0.7f, 0.2f, 0.15f}));
+    floorPlane(b, plainMaterial(b, "grey", glm::vec3(0.5f)), 10.0f);
+    ShapeBuilder ball(plainMaterial(b, "red", {0.7f, 0.2f, 0.15f}));
     ball.sphere({0, 1, 0}, 0.5f, 48, 96);
     b.place("sphere", ball);
     addPoint(b, {0, 4, 0}, glm::vec3(1.0f), 120.0f, 14.0f).sourceRadius = 0.2f;
@@ -76,8 +68,9 @@ Scene makeSphereOnPlane() {
 // The measures of the Cornell box, in units of half its width.
 Scene makeBoxes() {
     SceneBuilder b("boxes");
-    ShapeBuilder white(plain(b, "white", glm::vec3(0.73f))), red(plain(b, "red", {0.63f, 0.06f, 0.05f}));
-    ShapeBuilder green(plain(b, "green", {0.14f, 0.45f, 0.09f})), box(plain(b, "box", glm::vec3(0.7f)));
+    ShapeBuilder white(plainMaterial(b, "white", glm::vec3(0.73f))),
+        red(plainMaterial(b, "red", {0.63f, 0.06f, 0.05f}));
+    ShapeBuilder green(plainMaterial(b, "green", {0.14f, 0.45f, 0.09f})), box(plainMaterial(b, "box", glm::vec3(0.7f)));
     white.quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2});
     white.quad({-2, 4, -2}, {2, 4, -2}, {2, 4, 2}, {-2, 4, 2});
     white.quad({-2, 0, -2}, {2, 0, -2}, {2, 4, -2}, {-2, 4, -2});
@@ -100,8 +93,8 @@ Scene makeBoxes() {
 
 Scene makeColumns(const BuiltinOptions& options) {
     SceneBuilder b("columns");
-    floorPlane(b, plain(b, "grey", glm::vec3(0.5f)), 12.0f);
-    ShapeBuilder column(plain(b, "column", {0.7f, 0.66f, 0.6f}));
+    floorPlane(b, plainMaterial(b, "grey", glm::vec3(0.5f)), 12.0f);
+    ShapeBuilder column(plainMaterial(b, "column", {0.7f, 0.66f, 0.6f}));
     const glm::vec2 profile[] = {{0.06f, 0.0f}, {0.06f, 2.5f}, {0.0f, 2.5f}};
     column.lathe(profile, 16);
     std::vector<Primitive> primitives;
@@ -129,8 +122,8 @@ Scene makeColumns(const BuiltinOptions& options) {
 
 Scene makeCloth() {
     SceneBuilder b("cloth");
-    floorPlane(b, plain(b, "grey", glm::vec3(0.5f)), 8.0f);
-    const std::uint32_t material = plain(b, "cloth", {0.6f, 0.15f, 0.12f});
+    floorPlane(b, plainMaterial(b, "grey", glm::vec3(0.5f)), 8.0f);
+    const std::uint32_t material = plainMaterial(b, "cloth", {0.6f, 0.15f, 0.12f});
     b.scene.materials[material].doubleSided = true;
     for (int i = -2; i <= 2; ++i) {
         ShapeBuilder sheet(material);
@@ -150,7 +143,7 @@ Scene makeCloth() {
 
 Scene makeMasked() {
     SceneBuilder b("masked");
-    floorPlane(b, plain(b, "grey", glm::vec3(0.5f)), 8.0f);
+    floorPlane(b, plainMaterial(b, "grey", glm::vec3(0.5f)), 8.0f);
     Image holes;  // round holes on an 8 x 8 grid; alpha 0 inside
     holes.width = holes.height = 256;
     for (std::uint32_t y = 0; y < 256; ++y) {
@@ -160,7 +153,7 @@ Scene makeMasked() {
             holes.rgba8.insert(holes.rgba8.end(), {150, 170, 90, alpha});
         }
     }
-    const std::uint32_t material = plain(b, "perforated", glm::vec3(1.0f));
+    const std::uint32_t material = plainMaterial(b, "perforated", glm::vec3(1.0f));
     Material& m = b.scene.materials[material];
     m.alphaMode = AlphaMode::Mask;
     m.doubleSided = true;
@@ -180,8 +173,8 @@ Scene makeMasked() {
 // Obelisks along a line of sight from 3 m to 150 m, and a leaning gnomon on a dial in front: one sun, every cascade.
 Scene makeSundial() {
     SceneBuilder b("sundial");
-    floorPlane(b, plain(b, "sand", {0.62f, 0.55f, 0.42f}), 200.0f);
-    const std::uint32_t stone = plain(b, "stone", {0.72f, 0.68f, 0.62f});
+    floorPlane(b, plainMaterial(b, "sand", {0.62f, 0.55f, 0.42f}), 200.0f);
+    const std::uint32_t stone = plainMaterial(b, "stone", {0.72f, 0.68f, 0.62f});
     ShapeBuilder dial(stone), obelisk(stone);
     const glm::vec2 disk[] = {{1.1f, 0.0f}, {1.1f, 0.35f}, {1.0f, 0.40f}, {0.0f, 0.40f}};
     dial.lathe(disk, 48);
@@ -219,7 +212,7 @@ Scene makeSundial() {
 
 Scene makeSingleTriangle() {
     SceneBuilder b("single-triangle");
-    const std::uint32_t material = plain(b, "grey", glm::vec3(0.5f));
+    const std::uint32_t material = plainMaterial(b, "grey", glm::vec3(0.5f));
     b.scene.materials[material].doubleSided = true;
     ShapeBuilder shape(material);
     const glm::vec3 corners[] = {{-1, 0, 0}, {1, 0, 0}, {0, 1.5f, 0}};
@@ -232,7 +225,7 @@ Scene makeSingleTriangle() {
 
 Scene makeLightsOnly() {
     SceneBuilder b("lights-only");
-    plain(b, "unused", glm::vec3(0.5f));
+    plainMaterial(b, "unused", glm::vec3(0.5f));
     addPoint(b, {0, 1, 0}, glm::vec3(1.0f), 20.0f, 5.0f);
     addPoint(b, {2, 1, -1}, {1.0f, 0.5f, 0.2f}, 20.0f, 5.0f);
     addSpot(b, {-2, 3, 0}, {0, 0, 0}, {0.3f, 0.6f, 1.0f}, 60.0f, 8.0f, 0.5f);

@@ -95,8 +95,8 @@ private:
             for (std::size_t i = 0; i < meters.size(); ++i) {
                 LightTruthDesc desc = truthDescOf(result.lights[i].index);
                 desc.soft = false;
-                const std::vector<float> visibility = renderer_.readVisibility(result.lights[i].index);
-                meters[i].add(traceLight(traced_, receivers_, extent_, desc, visibility), visibility);
+                meters[i].add(traceLight(traced_, receivers_, extent_, desc),
+                              renderer_.readVisibility(result.lights[i].index));
             }
             progress.step();
         }
@@ -110,19 +110,20 @@ private:
     void verifyLight(std::uint32_t index, VerifyResult& result) {
         const std::vector<float> visibility = renderer_.readVisibility(index);
         const LightTruthDesc desc = truthDescOf(index);
-        const std::vector<renderer::PixelTruth> truth = traceLight(traced_, receivers_, extent_, desc, visibility);
+        renderer::LightTruth truth = traceLight(traced_, receivers_, extent_, desc);
+        completeSoftTruth(truth, traced_, receivers_, desc, visibility);
         VerifiedLight light;
         light.index = index;
         light.name = desc.light.name;
         light.kind = desc.light.kind;
         light.hasShadowmap = !desc.views.empty();
-        light.figures = figuresOf(truth, visibility, extent_, soft());
+        light.figures = figuresOf(truth, visibility, soft());
         if (light.figures.opaque.pairs + light.figures.subsurface.pairs == 0) {
             ++result.unseen;
             return;
         }
         if (!options_.maps.empty())
-            writePng(errorMap(truth, visibility, extent_, soft()),
+            writePng(errorMap(ofEveryPixel(truth), visibility, extent_, soft()),
                      std::filesystem::path(options_.maps) / mapFileName(light));
         result.total += light.figures;
         result.lights.push_back(std::move(light));

@@ -49,7 +49,7 @@ public:
             truth.hard = HardTruth::Away;
         } else {
             const double blocker = scene_.nearestBlocker(
-                {r.position, endOfRay(source_, r.position, scene_.reachMetres() + 1.0), r.triangle});
+                {r.position, endOfRay(source_, r.position, scene_.reachMetres() + 1.0), r.triangle, 0.0, r.subsurface});
             truth.hard = std::isfinite(blocker) ? HardTruth::Dark : HardTruth::Lit;
             truth.blockerMetres = static_cast<float>(blocker);
         }
@@ -116,7 +116,7 @@ private:
         for (int k = 0; k < kEdgePoints; ++k) {
             const glm::dvec3 q = r.position + edgeOffset(r, toLight, texel, k);
             const glm::dvec3 end = endOfRay(source_, q, scene_.reachMetres() + 1.0);
-            if (scene_.blocked({q, end, r.triangle, flatness}) != dark) return true;
+            if (scene_.blocked({q, end, r.triangle, flatness, r.subsurface}) != dark) return true;
         }
         return false;
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
 #include "renderer/truth/flicker.h"
@@ -265,6 +266,42 @@ TEST_F(PlantedErrors, OneTruthJudgesManyResults) {
         EXPECT_EQ(a.ssimSum, b.ssimSum);
     }
     EXPECT_GT(more, 1000u) << "the others asked for soft truth that this one does not need";
+}
+
+// 100 m away a standard depth buffer with a near plane of 5 cm steps by 12 mm: points that it gives lie below their own
+// surface as often as above it. Truth, whose points lie on their triangles, is not darkened by any neighbour.
+TEST(LightTruth, CoplanarNeighboursAHundredMetresAwayAreLit) {
+    SceneBuilder b;
+    b.quad({-90, 0, -60}, {-90, 0, 60}, {90, 0, 60}, {90, 0, -60}, 24);
+    b.scene.instances[0].worldFromObject =
+        glm::rotate(glm::translate(glm::mat4(1.0f), {70.3f, -31.7f, 43.1f}), 0.4f, glm::vec3(0.3f, 0.8f, -0.5f));
+    const glm::dmat4 world(b.scene.instances[0].worldFromObject);
+    const auto at = [&](double x, double y, double z) { return glm::dvec3(world * glm::dvec4(x, y, z, 1.0)); };
+    const glm::dvec3 eye = at(3.0, 35.0, 94.0);
+    const TracedScene traced(b.scene, restPose(b.scene), eye);
+    const Seen seen = lookAt(traced, eye, at(0.0, 0.0, 0.0), {128, 72});
+    LightTruthDesc desc;
+    desc.light.position = glm::vec3(at(-5.0, 2.0, 8.0));
+    desc.light.rangeMetres = 200.0f;
+    desc.light.sourceRadius = 0.2f;
+    const LightTruth truth = traceLight(traced, seen.receivers, seen.extent, desc);
+    const auto lit = std::ranges::count_if(truth.pixels, [](const PixelTruth& p) { return p.hard == HardTruth::Lit; });
+    EXPECT_GT(lit, 5000);
+    EXPECT_EQ(lit, std::ssize(truth.pixels));
+    const auto partly = std::ranges::count_if(truth.pixels, [](const PixelTruth& p) { return p.soft < 1.0f; });
+    EXPECT_EQ(partly, 0);
+
+    constexpr double kNear = 0.05;
+    const glm::dvec3 light = glm::dvec3(desc.light.position) - traced.origin();
+    const glm::dvec3 forward = glm::normalize(at(0.0, 0.0, 0.0) - eye);
+    std::size_t dark = 0;
+    for (const std::uint32_t i : truth.indices) {
+        const glm::dvec3 p = seen.receivers[i].position;
+        const double depth = glm::dot(p, forward);
+        const double stored = kNear / (1.0 - static_cast<double>(static_cast<float>(1.0 - kNear / depth)));
+        dark += traced.blocked({stored / depth * p, light});
+    }
+    EXPECT_GT(dark, truth.pixels.size() / 4) << "from the depth buffer: acne";
 }
 
 TEST(ErrorOf, SoftTruthThatNobodyAskedForDoesNotCount) {

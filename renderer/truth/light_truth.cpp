@@ -10,7 +10,7 @@
 namespace gnomon::renderer {
 namespace {
 
-constexpr double kEdgePixels = 2.0, kEdgeTexels = 1.5;
+constexpr double kEdgePixels = 2.0;
 constexpr int kEdgePoints = 8;
 // Faces are taken to slant by at most 84 degrees: a footprint ends somewhere.
 constexpr double kLeastCosine = 0.1;
@@ -94,7 +94,7 @@ private:
             slope = glm::cross(n, std::abs(n.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0));
         slope = glm::normalize(slope);
         const glm::dvec3 level = glm::cross(n, slope);
-        const double pixels = kEdgePixels * r.pixelMetres, texels = kEdgeTexels * texel;
+        const double pixels = kEdgePixels * r.pixelMetres, texels = desc_.edgeTexels * texel;
         if (desc_.edgeSet == EdgeSet::Circle)
             return std::max(pixels, texels) * (std::cos(angle) * slope + std::sin(angle) * level);
         const double cosine = std::max(std::abs(glm::dot(toLight, n)), kLeastCosine);

@@ -11,7 +11,7 @@
 
 namespace gnomon::renderer {
 
-/// What "2 pixels or 1.5 shadow texels around the point" means on a slanted face.
+/// What "2 pixels or 1.5 shadow texels (LightTruthDesc::edgeTexels) around the point" means on a slanted face.
 enum class EdgeSet : std::uint8_t {
     Footprint,  ///< they are measured in the picture and in the shadowmap: on the face they are as long as they fall
     Circle,     ///< a circle of that many metres on the face
@@ -26,6 +26,7 @@ struct LightTruthDesc {
     std::uint32_t subsetOf = 16;         ///< soft truth is traced for one tile in 1, 4 or 16
     std::uint64_t seed = 1;
     EdgeSet edgeSet = EdgeSet::Footprint;
+    double edgeTexels = 1.5;
 };
 
 enum class HardTruth : std::uint8_t {

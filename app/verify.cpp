@@ -85,10 +85,9 @@ void addVerifyCommand(CLI::App& app, Work& chosen) {
                      "Around a pixel: as far as pixels and shadow texels fall on its face, or a circle on it")
         ->check(CLI::IsMember({"footprint", "circle"}))
         ->capture_default_str();
-    CLI::Option* sweep = command->add_flag(
-        "--sweep", options->sweep, "Also all other biases against the same truth: hardware biases in a grid");
-    command
-        ->add_option("--sweep-constants", options->sweepConstants, "Constant factors of the grid, parted by commas")
+    CLI::Option* sweep = command->add_flag("--sweep", options->sweep,
+                                           "Also all other biases against the same truth: hardware biases in a grid");
+    command->add_option("--sweep-constants", options->sweepConstants, "Constant factors of the grid, parted by commas")
         ->needs(sweep)
         ->capture_default_str();
     command->add_option("--sweep-slopes", options->sweepSlopes, "Slope factors of the grid, parted by commas")

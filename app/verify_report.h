@@ -25,7 +25,7 @@ struct VerifyResult {
     renderer::LightFigures total;
     std::uint32_t flickerFrames = 0;  // 0: not measured
     renderer::FlickerFigures flicker;
-    std::uint32_t unseen = 0;  // casting lights that reach no pixel
+    std::uint32_t unseen = 0;         // casting lights that reach no pixel
     std::vector<SweptSetting> sweep;  // the chosen setting first; empty: not asked for
     double seconds = 0.0;
 };

@@ -4,146 +4,25 @@
 
 #include <filesystem>
 #include <memory>
-#include <numeric>
 
 #include "app/commands.h"
 #include "app/errors.h"
 #include "app/outputs.h"
 #include "app/progress.h"
-#include "app/session.h"
-#include "app/verify_maps.h"
-#include "app/verify_report.h"
-#include "renderer/scene/pose.h"
+#include "app/verification.h"
 
 namespace gnomon::app {
 namespace {
 
-using renderer::LightTruthDesc;
+constexpr double kMostConstant = 1e9, kMostSlope = 1e3;
 
-constexpr float kFlickerStepMetres = 0.01f;
-
-struct VerifyOptions {
-    Settings settings;
-    std::string json, maps, edgeSet = "footprint";
-    std::vector<std::uint32_t> lights;  // empty: all
-    std::uint32_t rays = 256, subset = 16, flickerFrames = 0;
-};
-
-class Verification {
-public:
-    Verification(const Session& session, const VerifyOptions& options)
-        : session_(session),
-          options_(options),
-          renderer_(session.device(), session.scene(), session.rendererDesc()),
-          pose_(poseAt(session.scene(), options.settings.time)),
-          camera_(posedCamera(session.scene(), pose_, session.camera())),
-          traced_(session.scene(), pose_, glm::dvec3(camera_.worldFromCamera[3])),
-          extent_{session.rendererDesc().widthPx, session.rendererDesc().heightPx} {
-        camera_.node = renderer::kNone;  // posed already
-        drawFrom(camera_);
-    }
-
-    VerifyResult run() {
-        const Stopwatch watch;
-        VerifyResult result;
-        std::vector<std::uint32_t> wanted = options_.lights;
-        if (wanted.empty()) {
-            wanted.resize(pose_.lights.size());
-            std::iota(wanted.begin(), wanted.end(), 0u);
-        }
-        std::erase_if(wanted, [&](std::uint32_t i) { return !pose_.lights[i].casts; });
-        double said = -1.0;
-        for (std::size_t i = 0; i < wanted.size(); ++i) {
-            verifyLight(wanted[i], result);
-            if (i + 1 != wanted.size() && watch.seconds() - said < 1.0) continue;
-            said = watch.seconds();
-            sayProgress(fmt::format("Light {} of {}, {:.1f} s.", i + 1, wanted.size(), said));
-        }
-        if (options_.flickerFrames != 0) measureFlicker(result);
-        result.seconds = watch.seconds();
-        return result;
-    }
-
-private:
-    void drawFrom(const renderer::SceneCamera& camera) {
-        renderer_.renderFrame(camera, renderer::ShadowMode::Deferred, options_.settings.time);
-        receivers_ = receiversOf(traced_, camera, extent_.widthPx, extent_.heightPx, renderer_.readTriangleIds());
-    }
-
-    [[nodiscard]] LightTruthDesc truthDescOf(std::uint32_t index) const {
-        LightTruthDesc desc;
-        desc.light = pose_.lights[index];
-        desc.views = renderer_.shadowViews(index);
-        desc.viewsOrigin = renderer_.frameOrigin();
-        desc.soft = soft();
-        desc.softRaysPerSide = raysPerSide();
-        desc.subsetOf = options_.subset;
-        desc.seed = options_.settings.seed * 1'000'003u + index;
-        desc.edgeSet = options_.edgeSet == "circle" ? renderer::EdgeSet::Circle : renderer::EdgeSet::Footprint;
-        return desc;
-    }
-
-    // The camera moves sideways, the scene stands still.
-    void measureFlicker(VerifyResult& result) {
-        std::vector<renderer::FlickerMeter> meters(result.lights.size());
-        FrameProgress progress(options_.flickerFrames);
-        for (std::uint32_t frame = 0; frame < options_.flickerFrames; ++frame) {
-            renderer::SceneCamera camera = camera_;
-            const glm::vec3 right = glm::normalize(glm::vec3(camera.worldFromCamera[0]));
-            camera.worldFromCamera[3] += glm::vec4(static_cast<float>(frame) * kFlickerStepMetres * right, 0.0f);
-            drawFrom(camera);
-            for (std::size_t i = 0; i < meters.size(); ++i) {
-                LightTruthDesc desc = truthDescOf(result.lights[i].index);
-                desc.soft = false;
-                const std::vector<float> visibility = renderer_.readVisibility(result.lights[i].index);
-                meters[i].add(traceLight(traced_, receivers_, extent_, desc, visibility), visibility);
-            }
-            progress.step();
-        }
-        result.flickerFrames = options_.flickerFrames;
-        for (std::size_t i = 0; i < meters.size(); ++i) {
-            result.lights[i].flicker = meters[i].figures();
-            result.flicker += meters[i].figures();
-        }
-    }
-
-    void verifyLight(std::uint32_t index, VerifyResult& result) {
-        const std::vector<float> visibility = renderer_.readVisibility(index);
-        const LightTruthDesc desc = truthDescOf(index);
-        const std::vector<renderer::PixelTruth> truth = traceLight(traced_, receivers_, extent_, desc, visibility);
-        VerifiedLight light;
-        light.index = index;
-        light.name = desc.light.name;
-        light.kind = desc.light.kind;
-        light.hasShadowmap = !desc.views.empty();
-        light.figures = figuresOf(truth, visibility, extent_, soft());
-        if (light.figures.opaque.pairs + light.figures.subsurface.pairs == 0) {
-            ++result.unseen;
-            return;
-        }
-        if (!options_.maps.empty())
-            writePng(errorMap(truth, visibility, extent_, soft()),
-                     std::filesystem::path(options_.maps) / mapFileName(light));
-        result.total += light.figures;
-        result.lights.push_back(std::move(light));
-    }
-
-    [[nodiscard]] bool soft() const { return session_.rendererDesc().filter == Filter::Pcss; }
-    [[nodiscard]] std::uint32_t raysPerSide() const {
-        std::uint32_t side = 1;
-        while (side * side < options_.rays) ++side;
-        return side;
-    }
-
-    const Session& session_;
-    const VerifyOptions& options_;
-    renderer::Renderer renderer_;
-    renderer::Pose pose_;
-    renderer::SceneCamera camera_;
-    renderer::TracedScene traced_;
-    renderer::TruthExtent extent_;
-    std::vector<renderer::TruthReceiver> receivers_;
-};
+// What --sweep judges beside the chosen bias.
+std::vector<BiasSetting> sweepOf(const VerifyOptions& options) {
+    if (!options.sweep) return {};
+    return settingsOfSweep(options.settings.bias,
+                           parseSweepNumbers(options.sweepConstants, "constant factors", kMostConstant),
+                           parseSweepNumbers(options.sweepSlopes, "slope factors", kMostSlope));
+}
 
 void verifyWithin(const renderer::VulkanInstance& instance, const VerifyOptions& options) {
     const Session session(instance, options.settings);
@@ -152,7 +31,7 @@ void verifyWithin(const renderer::VulkanInstance& instance, const VerifyOptions&
             throw UsageError(fmt::format("There is no light #{}: the scene has {}, counted from 0.", light,
                                          session.scene().lights.size()));
     const Stopwatch setUp;
-    Verification verification(session, options);
+    Verification verification(session, options, sweepOf(options));
     sayProgress(fmt::format("Drawn, and made ready to trace, in {:.1f} s.", setUp.seconds()));
     const VerifyResult result = verification.run();
     if (!options.json.empty()) writeJson(describe(session, result), options.json);
@@ -170,6 +49,7 @@ void prepareFolder(const std::string& folder) {
 }
 
 int verify(const VerifyOptions& options) {
+    sweepOf(options);
     rendererDescOf(options.settings);  // refuses wrong settings before anything is started
     if (options.settings.unquantised)
         throw UsageError("--unquantised has no meaning here: verify reads what is stored.");
@@ -204,6 +84,14 @@ void addVerifyCommand(CLI::App& app, Work& chosen) {
         ->add_option("--edge-set", options->edgeSet,
                      "Around a pixel: as far as pixels and shadow texels fall on its face, or a circle on it")
         ->check(CLI::IsMember({"footprint", "circle"}))
+        ->capture_default_str();
+    CLI::Option* sweep = command->add_flag("--sweep", options->sweep,
+                                           "Also all other biases against the same truth: hardware biases in a grid");
+    command->add_option("--sweep-constants", options->sweepConstants, "Constant factors of the grid, parted by commas")
+        ->needs(sweep)
+        ->capture_default_str();
+    command->add_option("--sweep-slopes", options->sweepSlopes, "Slope factors of the grid, parted by commas")
+        ->needs(sweep)
         ->capture_default_str();
     command->callback([&chosen, options] { chosen = [options] { return verify(*options); }; });
 }

@@ -31,7 +31,9 @@ void printRow(const std::string& name, const Figures& f) {
                f.ssimPixels != 0 ? fmt::format("{:.4f}", f.penumbraSsim()) : "-");
 }
 
-Json figuresOf(const Figures& f) {
+}  // namespace
+
+Json describe(const Figures& f) {
     double low = 0.0, high = 0.0;
     f.penumbraRmseInterval(low, high);
     const auto count = static_cast<double>(f.penumbraPairs);
@@ -62,8 +64,6 @@ Json figuresOf(const Figures& f) {
               {"penumbra", f.penumbraPairs}}}};
 }
 
-}  // namespace
-
 void printVerified(const Session& session, const VerifyResult& result) {
     const renderer::RendererDesc& desc = session.rendererDesc();
     fmt::print("{}, {}x{}, filter {}, {}: shadows against ray-traced truth\n\n", session.settings().scene, desc.widthPx,
@@ -93,6 +93,7 @@ void printVerified(const Session& session, const VerifyResult& result) {
         fmt::print("Flicker: {:.6f} in the mean over {} frames, {} pairs of neighbouring frames.\n",
                    result.flicker.mean(), result.flickerFrames, result.flicker.pairs);
     if (result.unseen != 0) fmt::print("{} casting lights reach no pixel.\n", result.unseen);
+    if (!result.sweep.empty()) printSweep(result.sweep);
 }
 
 Json describe(const Session& session, const VerifyResult& result) {
@@ -103,17 +104,18 @@ Json describe(const Session& session, const VerifyResult& result) {
                     {"name", light.name},
                     {"kind", nameOf(light.kind)},
                     {"hasShadowmap", light.hasShadowmap}};
-        row.update(figuresOf(light.figures.opaque));
+        row.update(describe(light.figures.opaque));
         if (result.flickerFrames != 0) row["flicker"] = light.flicker.mean();
-        row["subsurface"] = figuresOf(light.figures.subsurface);
+        row["subsurface"] = describe(light.figures.subsurface);
         lights.push_back(row);
     }
-    out["total"] = figuresOf(result.total.opaque);
+    out["total"] = describe(result.total.opaque);
     out["total"]["flicker"] = result.flickerFrames == 0 ? Json() : Json(result.flicker.mean());
     out["flickerFrames"] = result.flickerFrames;
-    out["subsurface"] = figuresOf(result.total.subsurface);
+    out["subsurface"] = describe(result.total.subsurface);
     out["lights"] = lights;
     out["castingLightsUnseen"] = result.unseen;
+    if (!result.sweep.empty()) describeSweep(result.sweep, out);
     out["seconds"] = result.seconds;
     return out;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/frame_json.h"
+#include "app/verify_sweep.h"
 #include "renderer/truth/figures.h"
 #include "renderer/truth/flicker.h"
 
@@ -24,9 +25,12 @@ struct VerifyResult {
     renderer::LightFigures total;
     std::uint32_t flickerFrames = 0;  // 0: not measured
     renderer::FlickerFigures flicker;
-    std::uint32_t unseen = 0;  // casting lights that reach no pixel
+    std::uint32_t unseen = 0;         // casting lights that reach no pixel
+    std::vector<SweptSetting> sweep;  // the chosen setting first; empty: not asked for
     double seconds = 0.0;
 };
+
+Json describe(const renderer::Figures& figures);
 
 void printVerified(const Session& session, const VerifyResult& result);
 Json describe(const Session& session, const VerifyResult& result);

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace gnomon::renderer {
 namespace {
 
 constexpr float kSoftLit = 0.99f, kSoftDark = 0.01f;
 
+bool isCounted(const PixelTruth& truth, float result) {
+    return truth.hard != HardTruth::NotCounted && result >= 0.0f;
+}
 bool isLit(const PixelTruth& truth, bool soft) {
     return soft ? truth.soft > kSoftLit : truth.hard == HardTruth::Lit;
 }
@@ -67,25 +71,35 @@ struct Window {
     }
 };
 
-void addWindow(Figures& f, bool subsurface, std::span<const PixelTruth> truth, std::span<const float> result,
-               TruthExtent extent, std::uint32_t x0, std::uint32_t y0) {
-    Window window;
-    for (std::uint32_t y = y0; y < std::min(y0 + kSubsetTilePx, extent.heightPx); ++y)
-        for (std::uint32_t x = x0; x < std::min(x0 + kSubsetTilePx, extent.widthPx); ++x) {
-            const std::size_t i = std::size_t{y} * extent.widthPx + x;
-            if (!truth[i].subset || truth[i].subsurface != subsurface || !(truth[i].soft >= 0.0f)) continue;
-            window.add(static_cast<double>(truth[i].soft), static_cast<double>(result[i]), inPenumbra(truth[i]));
+// The windows of one row of tiles.
+class WindowRow {
+public:
+    explicit WindowRow(std::uint32_t widthPx) : windows_((widthPx + kSubsetTilePx - 1) / kSubsetTilePx) {}
+
+    void add(std::uint32_t x, const PixelTruth& truth, float result) {
+        windows_[x / kSubsetTilePx].add(static_cast<double>(truth.soft), static_cast<double>(result),
+                                        inPenumbra(truth));
+    }
+    void closeInto(Figures& f) {
+        for (Window& window : windows_) {
+            if (window.penumbra != 0 && window.pixels >= kLeastWindowPixels) {
+                f.ssimSum += window.ssim() * static_cast<double>(window.penumbra);
+                f.ssimPixels += window.penumbra;
+            }
+            window = {};
         }
-    if (window.penumbra == 0 || window.pixels < kLeastWindowPixels) return;
-    f.ssimSum += window.ssim() * static_cast<double>(window.penumbra);
-    f.ssimPixels += window.penumbra;
-}
+    }
+
+private:
+    std::vector<Window> windows_;
+};
 
 }  // namespace
 
 PairError errorOf(const PixelTruth& truth, float result, bool soft) {
-    if (truth.hard == HardTruth::NotCounted) return PairError::NotCounted;
-    // Where no soft truth was traced, hard truth and result agree.
+    if (!isCounted(truth, result)) return PairError::NotCounted;
+    // Soft truth that other results asked for does not count: what one result is told must not depend on them.
+    if (soft && !truth.subset && !disagrees(truth, result)) return PairError::None;
     if (isLit(truth, soft) && result < 0.5f) return truth.edge ? PairError::EdgeError : PairError::Acne;
     if (isDark(truth, soft) && result > 0.5f) {
         if (truth.blockerMetres < kContactMetres) return PairError::ContactLeak;
@@ -95,13 +109,11 @@ PairError errorOf(const PixelTruth& truth, float result, bool soft) {
 }
 
 bool isFaintAcne(const PixelTruth& truth, float result, bool soft) {
-    return truth.hard != HardTruth::NotCounted && !truth.edge && isLit(truth, soft) && result >= 0.5f &&
-           result < 1.0f - kFaint;
+    return isCounted(truth, result) && !truth.edge && isLit(truth, soft) && result >= 0.5f && result < 1.0f - kFaint;
 }
 
 bool isFaintLeak(const PixelTruth& truth, float result, bool soft) {
-    return truth.hard != HardTruth::NotCounted && !truth.edge && isDark(truth, soft) && result <= 0.5f &&
-           result > kFaint;
+    return isCounted(truth, result) && !truth.edge && isDark(truth, soft) && result <= 0.5f && result > kFaint;
 }
 
 Figures& Figures::operator+=(const Figures& o) {
@@ -138,17 +150,25 @@ LightFigures& LightFigures::operator+=(const LightFigures& other) {
     return *this;
 }
 
-LightFigures figuresOf(std::span<const PixelTruth> truth, std::span<const float> result, TruthExtent extent,
-                       bool soft) {
+LightFigures figuresOf(const LightTruth& truth, std::span<const float> result, bool soft) {
     LightFigures figures;
-    for (std::size_t i = 0; i < truth.size(); ++i)
-        if (truth[i].hard != HardTruth::NotCounted)
-            add(truth[i].subsurface ? figures.subsurface : figures.opaque, truth[i], result[i], soft);
-    for (std::uint32_t y = 0; y < extent.heightPx; y += kSubsetTilePx)
-        for (std::uint32_t x = 0; x < extent.widthPx; x += kSubsetTilePx) {
-            addWindow(figures.opaque, false, truth, result, extent, x, y);
-            addWindow(figures.subsurface, true, truth, result, extent, x, y);
-        }
+    WindowRow opaque(truth.extent.widthPx), subsurface(truth.extent.widthPx);
+    std::uint32_t tileRow = 0;
+    const auto close = [&] {
+        opaque.closeInto(figures.opaque);
+        subsurface.closeInto(figures.subsurface);
+    };
+    for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+        const PixelTruth& pixel = truth.pixels[i];
+        const float visibility = result[truth.indices[i]];
+        if (!isCounted(pixel, visibility)) continue;
+        const std::uint32_t x = truth.indices[i] % truth.extent.widthPx, y = truth.indices[i] / truth.extent.widthPx;
+        if (y / kSubsetTilePx != tileRow) close();
+        tileRow = y / kSubsetTilePx;
+        add(pixel.subsurface ? figures.subsurface : figures.opaque, pixel, visibility, soft);
+        if (pixel.subset && pixel.soft >= 0.0f) (pixel.subsurface ? subsurface : opaque).add(x, pixel, visibility);
+    }
+    close();
     return figures;
 }
 

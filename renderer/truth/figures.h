@@ -14,7 +14,7 @@ enum class PairError : std::uint8_t { NotCounted, None, Acne, Leak, ContactLeak,
 /// A blocker nearer than this touches the receiver.
 inline constexpr float kContactMetres = 0.05f;
 
-/// `soft`: judged against soft truth (PCSS), else against hard truth.
+/// `soft`: judged against soft truth (PCSS), else against hard truth. A `result` below 0 is not counted.
 [[nodiscard]] PairError errorOf(const PixelTruth& truth, float result, bool soft);
 
 /// No edge, and off by more than kFaint, but not so far that errorOf() calls it acne or a leak.
@@ -52,7 +52,7 @@ struct LightFigures {
     LightFigures& operator+=(const LightFigures& other);
 };
 
-[[nodiscard]] LightFigures figuresOf(std::span<const PixelTruth> truth, std::span<const float> result,
-                                     TruthExtent extent, bool soft);
+/// `result`: for each pixel of the picture, below 0 where it is not counted; soft truth completed for it.
+[[nodiscard]] LightFigures figuresOf(const LightTruth& truth, std::span<const float> result, bool soft);
 
 }  // namespace gnomon::renderer

@@ -22,8 +22,8 @@ struct FlickerFigures {
 /// Follows one light. Keeps three bytes per pixel.
 class FlickerMeter {
 public:
-    /// The next frame. Counts pixels that are no edge, and lit or dark in both frames.
-    void add(std::span<const PixelTruth> truth, std::span<const float> result);
+    /// The next frame of the same extent. Counts pixels that are no edge, and lit or dark in both frames.
+    void add(const LightTruth& truth, std::span<const float> result);
     [[nodiscard]] const FlickerFigures& figures() const { return figures_; }
 
 private:

@@ -1,17 +1,16 @@
 #include "renderer/truth/light_truth.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <numbers>
-#include <thread>
 
+#include "renderer/truth/parallel.h"
 #include "renderer/truth/random.h"
 
 namespace gnomon::renderer {
 namespace {
 
-constexpr double kEdgePixels = 2.0, kEdgeTexels = 1.5;
+constexpr double kEdgePixels = 2.0;
 constexpr int kEdgePoints = 8;
 // Faces are taken to slant by at most 84 degrees: a footprint ends somewhere.
 constexpr double kLeastCosine = 0.1;
@@ -19,12 +18,13 @@ constexpr double kLeastCosine = 0.1;
 constexpr double kUndecidedCosine = 1e-4;
 // A neighbour that continues a face is as flat as floats can say.
 constexpr double kFlatness = 1e-6;
+constexpr std::size_t kPixelsAtOnce = 512;
 
 class Tracer {
 public:
     Tracer(const TracedScene& scene, std::span<const TruthReceiver> receivers, TruthExtent extent,
-           const LightTruthDesc& desc, std::span<const float> result)
-        : scene_(scene), receivers_(receivers), extent_(extent), desc_(desc), result_(result) {
+           const LightTruthDesc& desc)
+        : scene_(scene), receivers_(receivers), extent_(extent), desc_(desc) {
         const SceneLight& light = desc.light;
         source_.kind = light.kind;
         source_.position = glm::dvec3(light.position) - scene.origin();
@@ -34,11 +34,38 @@ public:
         while (blockTiles_ * blockTiles_ < desc.subsetOf) ++blockTiles_;
     }
 
-    void traceRow(std::uint32_t y, std::span<PixelTruth> row) const {
-        for (std::uint32_t x = 0; x < extent_.widthPx; ++x) {
-            const std::size_t i = std::size_t{y} * extent_.widthPx + x;
-            row[x] = traced(receivers_[i], result_.empty() ? nullptr : &result_[i], x, y);
+    [[nodiscard]] bool reaches(std::uint32_t pixel) const {
+        const TruthReceiver& r = receivers_[pixel];
+        return r.triangle != kNone && reaches(r.position);
+    }
+
+    [[nodiscard]] PixelTruth traced(std::uint32_t pixel) const {
+        const TruthReceiver& r = receivers_[pixel];
+        PixelTruth truth;
+        const glm::dvec3 toLight = directionTo(source_, r.position);
+        truth.subset = inSubset(pixel % extent_.widthPx, pixel / extent_.widthPx);
+        truth.subsurface = r.subsurface;
+        if (!r.subsurface && glm::dot(r.normal, toLight) <= 0.0) {
+            truth.hard = HardTruth::Away;
+        } else {
+            const double blocker = scene_.nearestBlocker(
+                {r.position, endOfRay(source_, r.position, scene_.reachMetres() + 1.0), r.triangle, 0.0, r.subsurface});
+            truth.hard = std::isfinite(blocker) ? HardTruth::Dark : HardTruth::Lit;
+            truth.blockerMetres = static_cast<float>(blocker);
         }
+        truth.edge = isEdge(r, toLight, truth.hard != HardTruth::Lit);
+        if (!desc_.soft) return truth;
+        if (truth.hard == HardTruth::Away)
+            truth.soft = 0.0f;
+        else if (truth.subset)
+            truth.soft = softAt(pixel);
+        return truth;
+    }
+
+    [[nodiscard]] float softAt(std::uint32_t pixel) const {
+        const std::uint64_t place = std::uint64_t{pixel / extent_.widthPx} << 32 | pixel % extent_.widthPx;
+        return static_cast<float>(softVisibility(scene_, receivers_[pixel], source_, desc_.softRaysPerSide,
+                                                 mixedBits(desc_.seed ^ mixedBits(place))));
     }
 
 private:
@@ -67,7 +94,7 @@ private:
             slope = glm::cross(n, std::abs(n.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0));
         slope = glm::normalize(slope);
         const glm::dvec3 level = glm::cross(n, slope);
-        const double pixels = kEdgePixels * r.pixelMetres, texels = kEdgeTexels * texel;
+        const double pixels = kEdgePixels * r.pixelMetres, texels = desc_.edgeTexels * texel;
         if (desc_.edgeSet == EdgeSet::Circle)
             return std::max(pixels, texels) * (std::cos(angle) * slope + std::sin(angle) * level);
         const double cosine = std::max(std::abs(glm::dot(toLight, n)), kLeastCosine);
@@ -89,66 +116,67 @@ private:
         for (int k = 0; k < kEdgePoints; ++k) {
             const glm::dvec3 q = r.position + edgeOffset(r, toLight, texel, k);
             const glm::dvec3 end = endOfRay(source_, q, scene_.reachMetres() + 1.0);
-            if (scene_.blocked({q, end, r.triangle, flatness}) != dark) return true;
+            if (scene_.blocked({q, end, r.triangle, flatness, r.subsurface}) != dark) return true;
         }
         return false;
-    }
-
-    [[nodiscard]] PixelTruth traced(const TruthReceiver& r, const float* result, std::uint32_t x,
-                                    std::uint32_t y) const {
-        PixelTruth truth;
-        if (r.triangle == kNone || !reaches(r.position) || (result != nullptr && *result < 0.0f)) return truth;
-        const glm::dvec3 toLight = directionTo(source_, r.position);
-        truth.subset = inSubset(x, y);
-        truth.subsurface = r.subsurface;
-        if (!r.subsurface && glm::dot(r.normal, toLight) <= 0.0) {
-            truth.hard = HardTruth::Away;
-        } else {
-            const double blocker = scene_.nearestBlocker(
-                {r.position, endOfRay(source_, r.position, scene_.reachMetres() + 1.0), r.triangle});
-            truth.hard = std::isfinite(blocker) ? HardTruth::Dark : HardTruth::Lit;
-            truth.blockerMetres = static_cast<float>(blocker);
-        }
-        const bool dark = truth.hard != HardTruth::Lit;
-        truth.edge = isEdge(r, toLight, dark);
-        if (!desc_.soft) return truth;
-        const float most = truth.edge ? 0.5f : kFaint;
-        const bool disagrees = result != nullptr && (dark ? *result > most : *result < 1.0f - most);
-        if (truth.hard == HardTruth::Away) {
-            truth.soft = 0.0f;
-        } else if (truth.subset || disagrees) {
-            const std::uint64_t seed = mixedBits(desc_.seed ^ mixedBits(std::uint64_t{y} << 32 | x));
-            truth.soft = static_cast<float>(softVisibility(scene_, r, source_, desc_.softRaysPerSide, seed));
-        }
-        return truth;
     }
 
     const TracedScene& scene_;
     std::span<const TruthReceiver> receivers_;
     TruthExtent extent_;
     const LightTruthDesc& desc_;
-    std::span<const float> result_;
     LightSource source_;
     std::uint32_t blockTiles_ = 1;  // across a block of tiles, one of which is in the subset
     glm::dvec3 viewsFromTraced_{0.0};
 };
 
+// Pieces of `count` for all cores: work(first, last).
+template <class Work>
+void inPieces(std::size_t count, const Work& work) {
+    forEachInParallel((count + kPixelsAtOnce - 1) / kPixelsAtOnce, [&](std::size_t piece) {
+        work(piece * kPixelsAtOnce, std::min((piece + 1) * kPixelsAtOnce, count));
+    });
+}
+
 }  // namespace
 
-std::vector<PixelTruth> traceLight(const TracedScene& scene, std::span<const TruthReceiver> receivers,
-                                   TruthExtent extent, const LightTruthDesc& desc, std::span<const float> result) {
-    std::vector<PixelTruth> out(receivers.size());
-    const Tracer tracer(scene, receivers, extent, desc, result);
-    std::atomic<std::uint32_t> next = 0;
-    const auto work = [&] {
-        for (std::uint32_t y = next++; y < extent.heightPx; y = next++)
-            tracer.traceRow(y, std::span(out).subspan(std::size_t{y} * extent.widthPx, extent.widthPx));
-    };
-    const std::uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1u, std::max(extent.heightPx, 1u));
-    std::vector<std::jthread> pool;
-    for (std::uint32_t i = 1; i < threads; ++i) pool.emplace_back(work);
-    work();
-    return pool.clear(), out;
+bool disagrees(const PixelTruth& truth, float result) {
+    const float most = truth.edge ? 0.5f : kFaint;
+    return truth.hard == HardTruth::Lit ? result < 1.0f - most : result > most;
+}
+
+LightTruth traceLight(const TracedScene& scene, std::span<const TruthReceiver> receivers, TruthExtent extent,
+                      const LightTruthDesc& desc) {
+    const Tracer tracer(scene, receivers, extent, desc);
+    LightTruth out{.extent = extent};
+    for (std::uint32_t i = 0; i < receivers.size(); ++i)
+        if (tracer.reaches(i)) out.indices.push_back(i);
+    out.indices.shrink_to_fit();
+    out.pixels.resize(out.indices.size());
+    inPieces(out.pixels.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) out.pixels[i] = tracer.traced(out.indices[i]);
+    });
+    return out;
+}
+
+void completeSoftTruth(LightTruth& truth, const TracedScene& scene, std::span<const TruthReceiver> receivers,
+                       const LightTruthDesc& desc, std::span<const float> result) {
+    if (!desc.soft) return;
+    const Tracer tracer(scene, receivers, truth.extent, desc);
+    inPieces(truth.pixels.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            PixelTruth& pixel = truth.pixels[i];
+            const float visibility = result[truth.indices[i]];
+            if (visibility >= 0.0f && std::isnan(pixel.soft) && disagrees(pixel, visibility))
+                pixel.soft = tracer.softAt(truth.indices[i]);
+        }
+    });
+}
+
+std::vector<PixelTruth> ofEveryPixel(const LightTruth& truth) {
+    std::vector<PixelTruth> out(std::size_t{truth.extent.widthPx} * truth.extent.heightPx);
+    for (std::size_t i = 0; i < truth.pixels.size(); ++i) out[truth.indices[i]] = truth.pixels[i];
+    return out;
 }
 
 }  // namespace gnomon::renderer

@@ -11,7 +11,7 @@
 
 namespace gnomon::renderer {
 
-/// What "2 pixels or 1.5 shadow texels around the point" means on a slanted face.
+/// What "2 pixels or 1.5 shadow texels (LightTruthDesc::edgeTexels) around the point" means on a slanted face.
 enum class EdgeSet : std::uint8_t {
     Footprint,  ///< they are measured in the picture and in the shadowmap: on the face they are as long as they fall
     Circle,     ///< a circle of that many metres on the face
@@ -26,6 +26,7 @@ struct LightTruthDesc {
     std::uint32_t subsetOf = 16;         ///< soft truth is traced for one tile in 1, 4 or 16
     std::uint64_t seed = 1;
     EdgeSet edgeSet = EdgeSet::Footprint;
+    double edgeTexels = 1.5;
 };
 
 enum class HardTruth : std::uint8_t {
@@ -52,12 +53,29 @@ struct TruthExtent {
     std::uint32_t widthPx = 0, heightPx = 0;
 };
 
-/// All cores work; the answer does not depend on their number. `result`, if not empty, is the visibility that is
-/// judged: pixels where it is below 0 are not counted, and soft truth is traced, beyond the subset, wherever result and
-/// hard truth disagree (by more than one half, at pixels that are no edge by kFaint). The subset is one tile of 8x8
-/// pixels of every 4x4 (2x2, 1x1) tiles.
-[[nodiscard]] std::vector<PixelTruth> traceLight(const TracedScene& scene, std::span<const TruthReceiver> receivers,
-                                                 TruthExtent extent, const LightTruthDesc& desc,
-                                                 std::span<const float> result);
+/// Of the pixels that a light reaches, whatever a result says; the others are not counted. 16 bytes a pixel.
+struct LightTruth {
+    TruthExtent extent;
+    std::vector<std::uint32_t> indices;  ///< of the pixels in the picture, rows from the top, ascending
+    std::vector<PixelTruth> pixels;      ///< as many
+    [[nodiscard]] std::size_t bytes() const { return indices.size() * (sizeof(PixelTruth) + sizeof(std::uint32_t)); }
+};
+
+/// Off so far that soft truth has to say what is right: by more than one half, at pixels that are no edge by kFaint.
+[[nodiscard]] bool disagrees(const PixelTruth& truth, float result);
+
+/// Hard truth and edges, and soft truth within the subset: one tile of 8x8 pixels of every 4x4 (2x2, 1x1) tiles.
+/// All cores work; the answer does not depend on their number.
+[[nodiscard]] LightTruth traceLight(const TracedScene& scene, std::span<const TruthReceiver> receivers,
+                                    TruthExtent extent, const LightTruthDesc& desc);
+
+/// Adds soft truth, where there is none yet, to the pixels at which `result` disagrees: a visibility for each pixel of
+/// the picture, below 0 where it is not judged. One truth can so judge any number of results. All but the result as
+/// traceLight() had it. A pixel's soft truth depends on neither the results nor their order.
+void completeSoftTruth(LightTruth& truth, const TracedScene& scene, std::span<const TruthReceiver> receivers,
+                       const LightTruthDesc& desc, std::span<const float> result);
+
+/// For each pixel of the picture.
+[[nodiscard]] std::vector<PixelTruth> ofEveryPixel(const LightTruth& truth);
 
 }  // namespace gnomon::renderer

@@ -47,7 +47,8 @@ double softVisibility(const TracedScene& scene, const TruthReceiver& receiver, c
         const glm::dvec2 at = radius * diskOf(u, v);
         const glm::dvec3 end = centre + at.x * right + at.y * up;
         const bool below = !receiver.subsurface && glm::dot(receiver.normal, end - receiver.position) <= 0.0;
-        if (!below && !scene.blocked({receiver.position, end, receiver.triangle})) ++free;
+        const ShadowRay ray = {receiver.position, end, receiver.triangle, 0.0, receiver.subsurface};
+        if (!below && !scene.blocked(ray)) ++free;
     }
     return static_cast<double>(free) / (raysPerSide * raysPerSide);
 }

@@ -22,6 +22,9 @@ constexpr double kFloatError = 1e-6;
 // long would stand above the point's own surface.
 constexpr double kStrictNear = 1e3;
 
+// As the renderer has it: flatter instances are not drawn.
+constexpr double kLeastDeterminant = 1e-30;
+
 double largest(const glm::dvec3& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
@@ -113,6 +116,7 @@ struct TracedScene::Query {
 #endif
         // Double itself errs, and so may whoever computed the start.
         freeMetres = std::max(ray.freeMetres, 1e-11 * (1.0 + largest(from) + length));
+        if (ray.fromSubsurface && traced.rule_.frontsBlock) freeMetres = std::max(freeMetres, traced.rule_.freeMetres);
     }
 
     [[nodiscard]] double floatError(const glm::dvec3& at) const {
@@ -122,6 +126,7 @@ struct TracedScene::Query {
     bool accepts(std::uint32_t index) {
         if (index == own) return false;
         const Triangle& triangle = scene->triangles_[index];
+        if (!triangle.drawn || scene->leavesThrough(triangle, way)) return false;
         Meeting meeting;
         if (!meets(triangle.corners, from, way, meeting)) return false;
         const double distance = meeting.t * length;
@@ -157,8 +162,8 @@ struct TracedScene::Query {
     }
 };
 
-TracedScene::TracedScene(const Scene& scene, const Pose& pose, const glm::dvec3& origin)
-    : scene_(scene), origin_(origin), embree_(std::make_unique<Embree>()) {
+TracedScene::TracedScene(const Scene& scene, const Pose& pose, const glm::dvec3& origin, const SubsurfaceRule& rule)
+    : scene_(scene), origin_(origin), rule_(rule), embree_(std::make_unique<Embree>()) {
     triangles_.reserve(triangleCount(scene));
     std::size_t deformed = 0;
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
@@ -182,9 +187,12 @@ void TracedScene::append(const Primitive& primitive, const std::vector<glm::vec3
     const Material& material = scene_.materials[primitive.material];
     const TextureUse& use = material.baseColourTexture;
     const bool masked = material.alphaMode != AlphaMode::Opaque;
+    const double determinant = glm::determinant(glm::dmat3(worldFromObject));
     for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
         Triangle triangle;
         triangle.material = primitive.material;
+        triangle.drawn = std::abs(determinant) > kLeastDeterminant;
+        triangle.mirrored = determinant < 0.0;
         MaskCorners mask;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t v = primitive.indices[i + k];
@@ -242,6 +250,15 @@ void TracedScene::build() {
 
 bool TracedScene::isSubsurface(std::uint32_t triangle) const {
     return scene_.materials[triangles_[triangle].material].subsurface;
+}
+
+// Shadowmaps are drawn without these fronts.
+bool TracedScene::leavesThrough(const Triangle& triangle, const glm::dvec3& way) const {
+    const Material& material = scene_.materials[triangle.material];
+    if (rule_.frontsBlock || !material.subsurface || material.doubleSided) return false;
+    const std::array<glm::dvec3, 3>& c = triangle.corners;
+    const double along = glm::dot(glm::cross(c[1] - c[0], c[2] - c[0]), way);
+    return triangle.mirrored ? along < 0.0 : along > 0.0;
 }
 
 // The rule of the G-buffer's and the shadowmaps' alpha test.

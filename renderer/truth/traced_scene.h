@@ -8,7 +8,8 @@
 // again in double, from the point itself, and must lie farther from it than double arithmetic errs. The triangle that
 // the point lies on is left out by its number. Limits: a triangle is taken to be a few float steps larger where the ray
 // passes its edge far from its start, so that no light falls through seams that Embree saw a step beside the true ones.
-// Alpha masks are read at the finest mip.
+// Alpha masks are read at the finest mip. Instances that a flat matrix makes nothing of are not drawn, and do not
+// block.
 
 #include <array>
 #include <cstdint>
@@ -24,8 +25,18 @@ namespace gnomon::renderer {
 /// From a point to a light, both relative to TracedScene::origin().
 struct ShadowRay {
     glm::dvec3 from{0.0}, to{0.0};
-    std::uint32_t own = kNone;  ///< the triangle that `from` lies on; it cannot block
-    double freeMetres = 0.0;    ///< what is nearer to `from` does not block
+    std::uint32_t own = kNone;    ///< the triangle that `from` lies on; it cannot block
+    double freeMetres = 0.0;      ///< what is nearer to `from` does not block
+    bool fromSubsurface = false;  ///< `from` lies on a subsurface material
+};
+
+/// What light may do that has entered a body of a subsurface material (docs/verify.md).
+struct SubsurfaceRule {
+    /// False: single-sided triangles of subsurface materials do not block rays that leave through their front, the side
+    /// from which they are counter-clockwise as placed. True: they do.
+    bool frontsBlock = false;
+    /// With `frontsBlock`: what is nearer to a subsurface point than this, along its ray, does not block.
+    double freeMetres = 0.02;
 };
 
 /// Thread safe once made.
@@ -33,7 +44,7 @@ class TracedScene {
 public:
     /// Positions are kept relative to `origin`, which should be near the camera. The scene must outlive this.
     /// Throws std::runtime_error with one sentence where Embree fails.
-    TracedScene(const Scene& scene, const Pose& pose, const glm::dvec3& origin);
+    TracedScene(const Scene& scene, const Pose& pose, const glm::dvec3& origin, const SubsurfaceRule& rule = {});
     ~TracedScene();
     TracedScene(const TracedScene&) = delete;
     TracedScene& operator=(const TracedScene&) = delete;
@@ -42,6 +53,8 @@ public:
         std::array<glm::dvec3, 3> corners;
         std::uint32_t material = 0;
         std::uint32_t mask = kNone;  // among the alpha-tested ones
+        bool drawn = true;
+        bool mirrored = false;  // the instance's matrix turned the winding around
     };
     /// In the scene's order: instances, their primitives, their triangles (Renderer::readTriangleIds()).
     [[nodiscard]] const std::vector<Triangle>& triangles() const { return triangles_; }
@@ -64,10 +77,12 @@ private:
     };
     void append(const Primitive& primitive, const std::vector<glm::vec3>& positions, const glm::dmat4& worldFromObject);
     void build();
+    [[nodiscard]] bool leavesThrough(const Triangle& triangle, const glm::dvec3& way) const;
     [[nodiscard]] bool isCutOut(const Triangle& triangle, const glm::dvec3& barycentrics) const;
 
     const Scene& scene_;
     glm::dvec3 origin_;
+    SubsurfaceRule rule_;
     double reachMetres_ = 0.0;
     std::vector<Triangle> triangles_;
     std::vector<MaskCorners> masks_;

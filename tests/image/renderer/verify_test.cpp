@@ -16,7 +16,7 @@ constexpr double kMostAcneAndLeak = 0.001, kMostContactLeak = 0.01;
 struct Verified {
     Figures figures;
     std::vector<float> visibility;  // of the last light
-    std::vector<PixelTruth> truth;
+    LightTruth truth;
     HdrPicture picture;
 };
 
@@ -38,8 +38,9 @@ Verified verified(const Device& device, const View3d& view, const RendererDesc& 
         light.soft = desc.filter == Filter::Pcss;
         light.subsetOf = 4;
         out.visibility = renderer.readVisibility(i);
-        out.truth = traceLight(traced, receivers, extent, light, out.visibility);
-        const LightFigures figures = figuresOf(out.truth, out.visibility, extent, light.soft);
+        out.truth = traceLight(traced, receivers, extent, light);
+        completeSoftTruth(out.truth, traced, receivers, light, out.visibility);
+        const LightFigures figures = figuresOf(out.truth, out.visibility, light.soft);
         out.figures += figures.opaque;
         out.figures += figures.subsurface;
     }
@@ -79,11 +80,10 @@ TEST_P(Verify, LostShadowsAndLightsAreTold) {
     RendererDesc desc = smallDesc(160, 90);
     desc.filter = Filter::Hard;
     Verified v = verified(device(), builtin("sphere-on-plane"), desc);
-    const TruthExtent extent = {desc.widthPx, desc.heightPx};
     for (float& visibility : v.visibility) visibility = visibility < 0.0f ? visibility : 1.0f;
-    EXPECT_GT(figuresOf(v.truth, v.visibility, extent, false).opaque.leak, 50u);
+    EXPECT_GT(figuresOf(v.truth, v.visibility, false).opaque.leak, 50u);
     for (float& visibility : v.visibility) visibility = visibility < 0.0f ? visibility : 0.0f;
-    EXPECT_GT(figuresOf(v.truth, v.visibility, extent, false).opaque.acne, 5000u);
+    EXPECT_GT(figuresOf(v.truth, v.visibility, false).opaque.acne, 5000u);
 }
 
 // What is read is what the lighting used: with pools far too small it is evaluated, and the same.

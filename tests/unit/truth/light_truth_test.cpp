@@ -1,7 +1,9 @@
 // Soft truth against closed forms, and figures that tell planted errors.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
 #include "renderer/truth/flicker.h"
@@ -96,6 +98,13 @@ TEST(SoftShadow, HorizonHidesWhatIsBelow) {
     EXPECT_EQ(softVisibility(traced, r, low, 16, 3), 1.0);
 }
 
+bool same(const LightTruth& a, const LightTruth& b) {
+    return std::ranges::equal(a.pixels, b.pixels, [](const PixelTruth& p, const PixelTruth& q) {
+        return p.hard == q.hard && p.edge == q.edge && p.subset == q.subset &&
+               (p.soft == q.soft || (std::isnan(p.soft) && std::isnan(q.soft)));
+    });
+}
+
 // A plate that lies 5 mm over the floor, a ball over both, one light.
 class PlantedErrors : public testing::Test {
 protected:
@@ -123,9 +132,13 @@ protected:
         }
         return result;
     }
+    LightTruth truthFor(const std::vector<float>& result) const {
+        LightTruth truth = traceLight(*traced, seen.receivers, seen.extent, desc);
+        completeSoftTruth(truth, *traced, seen.receivers, desc, result);
+        return truth;
+    }
     Figures judged(const std::vector<float>& result) const {
-        return figuresOf(traceLight(*traced, seen.receivers, seen.extent, desc, result), result, seen.extent, desc.soft)
-            .opaque;
+        return figuresOf(truthFor(result), result, desc.soft).opaque;
     }
 
     SceneBuilder b;
@@ -193,8 +206,7 @@ TEST_F(PlantedErrors, SubsurfaceStandsApart) {
     b.scene.materials[0].subsurface = true;
     for (TruthReceiver& r : seen.receivers) r.subsurface = true;
     const std::vector<float> result(seen.receivers.size(), 1.0f);
-    const LightFigures f =
-        figuresOf(traceLight(*traced, seen.receivers, seen.extent, desc, result), result, seen.extent, false);
+    const LightFigures f = figuresOf(truthFor(result), result, false);
     EXPECT_EQ(f.opaque.pairs, 0u);
     EXPECT_GT(f.subsurface.pairs, 5000u);
     EXPECT_EQ(f.subsurface.away, 0u);
@@ -204,16 +216,14 @@ TEST_F(PlantedErrors, PenumbraeAreMeasured) {
     desc.soft = true;
     desc.subsetOf = 1;
     std::vector<float> result = biased(0.0);
-    const std::vector<PixelTruth> truth = traceLight(*traced, seen.receivers, seen.extent, desc, result);
-    for (std::size_t i = 0; i < result.size(); ++i)
-        if (truth[i].hard != HardTruth::NotCounted) result[i] = truth[i].soft;
-    const Figures same = figuresOf(truth, result, seen.extent, true).opaque;
+    const LightTruth truth = truthFor(result);
+    for (std::size_t i = 0; i < truth.pixels.size(); ++i) result[truth.indices[i]] = truth.pixels[i].soft;
+    const Figures same = figuresOf(truth, result, true).opaque;
     EXPECT_GT(same.penumbraPairs, 300u);
     EXPECT_EQ(same.penumbraRmse(), 0.0);
     EXPECT_NEAR(same.penumbraSsim(), 1.0, 1e-6);
-    for (std::size_t i = 0; i < result.size(); ++i)
-        if (truth[i].hard != HardTruth::NotCounted) result[i] += 0.1f;
-    const Figures off = figuresOf(truth, result, seen.extent, true).opaque;
+    for (const std::uint32_t i : truth.indices) result[i] += 0.1f;
+    const Figures off = figuresOf(truth, result, true).opaque;
     double low = 0.0, high = 0.0;
     off.penumbraRmseInterval(low, high);
     EXPECT_NEAR(off.penumbraRmse(), 0.1, 1e-6);
@@ -225,35 +235,105 @@ TEST_F(PlantedErrors, PenumbraeAreMeasured) {
 TEST_F(PlantedErrors, SubsetIsOneInSixteenAndRepeats) {
     desc.soft = true;
     const std::vector<float> result = biased(0.0);
-    const std::vector<PixelTruth> once = traceLight(*traced, seen.receivers, seen.extent, desc, result);
-    const std::vector<PixelTruth> again = traceLight(*traced, seen.receivers, seen.extent, desc, result);
-    std::size_t counted = 0, chosen = 0;
-    for (std::size_t i = 0; i < once.size(); ++i) {
-        counted += once[i].hard != HardTruth::NotCounted;
-        chosen += once[i].subset;
-        ASSERT_EQ(once[i].subset, again[i].subset);
-        ASSERT_TRUE(once[i].soft == again[i].soft || (std::isnan(once[i].soft) && std::isnan(again[i].soft)));
+    const LightTruth once = truthFor(result), again = truthFor(result);
+    ASSERT_EQ(once.indices, again.indices);
+    EXPECT_TRUE(same(once, again));
+    const auto chosen = std::ranges::count_if(once.pixels, [](const PixelTruth& p) { return p.subset; });
+    EXPECT_NEAR(static_cast<double>(chosen) / static_cast<double>(once.pixels.size()), 1.0 / 16.0, 0.03);
+}
+
+// One truth judges several results, and says of each what a truth of its own would say.
+TEST_F(PlantedErrors, OneTruthJudgesManyResults) {
+    desc.soft = true;
+    const std::vector<float> results[] = {biased(0.0), biased(-0.01), std::vector<float>(seen.receivers.size(), 1.0f),
+                                          std::vector<float>(seen.receivers.size(), 0.0f)};
+    LightTruth shared = traceLight(*traced, seen.receivers, seen.extent, desc);
+    for (const std::vector<float>& result : results) completeSoftTruth(shared, *traced, seen.receivers, desc, result);
+    std::size_t more = 0;
+    for (const std::vector<float>& result : results) {
+        const LightTruth own = truthFor(result);
+        for (std::size_t i = 0; i < own.pixels.size(); ++i)
+            more += std::isnan(own.pixels[i].soft) && !std::isnan(shared.pixels[i].soft);
+        const Figures a = figuresOf(own, result, true).opaque, b = figuresOf(shared, result, true).opaque;
+        EXPECT_EQ(a.pairs, b.pairs);
+        EXPECT_EQ(a.acne, b.acne);
+        EXPECT_EQ(a.leak, b.leak);
+        EXPECT_EQ(a.contactLeak, b.contactLeak);
+        EXPECT_EQ(a.edgeError, b.edgeError);
+        EXPECT_EQ(a.faintAcne, b.faintAcne);
+        EXPECT_EQ(a.faintLeak, b.faintLeak);
+        EXPECT_EQ(a.squaredError, b.squaredError);
+        EXPECT_EQ(a.ssimSum, b.ssimSum);
     }
-    EXPECT_NEAR(static_cast<double>(chosen) / static_cast<double>(counted), 1.0 / 16.0, 0.03);
+    EXPECT_GT(more, 1000u) << "the others asked for soft truth that this one does not need";
+}
+
+// 100 m away a standard depth buffer with a near plane of 5 cm steps by 12 mm: points that it gives lie below their own
+// surface as often as above it. Truth, whose points lie on their triangles, is not darkened by any neighbour.
+TEST(LightTruth, CoplanarNeighboursAHundredMetresAwayAreLit) {
+    SceneBuilder b;
+    b.quad({-90, 0, -60}, {-90, 0, 60}, {90, 0, 60}, {90, 0, -60}, 24);
+    b.scene.instances[0].worldFromObject =
+        glm::rotate(glm::translate(glm::mat4(1.0f), {70.3f, -31.7f, 43.1f}), 0.4f, glm::vec3(0.3f, 0.8f, -0.5f));
+    const glm::dmat4 world(b.scene.instances[0].worldFromObject);
+    const auto at = [&](double x, double y, double z) { return glm::dvec3(world * glm::dvec4(x, y, z, 1.0)); };
+    const glm::dvec3 eye = at(3.0, 35.0, 94.0);
+    const TracedScene traced(b.scene, restPose(b.scene), eye);
+    const Seen seen = lookAt(traced, eye, at(0.0, 0.0, 0.0), {128, 72});
+    LightTruthDesc desc;
+    desc.light.position = glm::vec3(at(-5.0, 2.0, 8.0));
+    desc.light.rangeMetres = 200.0f;
+    desc.light.sourceRadius = 0.2f;
+    const LightTruth truth = traceLight(traced, seen.receivers, seen.extent, desc);
+    const auto lit = std::ranges::count_if(truth.pixels, [](const PixelTruth& p) { return p.hard == HardTruth::Lit; });
+    EXPECT_GT(lit, 5000);
+    EXPECT_EQ(lit, std::ssize(truth.pixels));
+    const auto partly = std::ranges::count_if(truth.pixels, [](const PixelTruth& p) { return p.soft < 1.0f; });
+    EXPECT_EQ(partly, 0);
+
+    constexpr double kNear = 0.05;
+    const glm::dvec3 light = glm::dvec3(desc.light.position) - traced.origin();
+    const glm::dvec3 forward = glm::normalize(at(0.0, 0.0, 0.0) - eye);
+    std::size_t dark = 0;
+    for (const std::uint32_t i : truth.indices) {
+        const glm::dvec3 p = seen.receivers[i].position;
+        const double depth = glm::dot(p, forward);
+        const double stored = kNear / (1.0 - static_cast<double>(static_cast<float>(1.0 - kNear / depth)));
+        dark += traced.blocked({stored / depth * p, light});
+    }
+    EXPECT_GT(dark, truth.pixels.size() / 4) << "from the depth buffer: acne";
+}
+
+TEST(ErrorOf, SoftTruthThatNobodyAskedForDoesNotCount) {
+    PixelTruth hidden;  // the source's centre alone is hidden
+    hidden.hard = HardTruth::Dark;
+    hidden.soft = 1.0f;
+    EXPECT_EQ(errorOf(hidden, 0.0f, true), PairError::None) << "as if no other result had asked";
+    EXPECT_EQ(errorOf(hidden, 1.0f, true), PairError::None);
+    hidden.subset = true;
+    EXPECT_EQ(errorOf(hidden, 0.0f, true), PairError::Acne);
+    EXPECT_EQ(errorOf(hidden, -1.0f, true), PairError::NotCounted);
 }
 
 TEST(Flicker, CountsChangeWhereNothingChanges) {
-    std::vector<PixelTruth> truth(4);
-    truth[0].hard = truth[1].hard = truth[2].hard = HardTruth::Lit;
-    truth[1].edge = true;
+    LightTruth truth{{4, 1}, {0, 1, 2}, std::vector<PixelTruth>(3)};
+    for (PixelTruth& pixel : truth.pixels) pixel.hard = HardTruth::Lit;
+    truth.pixels[1].edge = true;
     FlickerMeter meter;
     meter.add(truth, std::vector<float>{1.0f, 1.0f, 1.0f, -1.0f});
     EXPECT_EQ(meter.figures().pairs, 0u);
     meter.add(truth, std::vector<float>{0.5f, 0.0f, 1.0f, -1.0f});
     EXPECT_EQ(meter.figures().pairs, 2u) << "no edge, no background";
     EXPECT_NEAR(meter.figures().mean(), 0.25, 1e-4);
-    truth[0].hard = HardTruth::Dark;
+    truth.pixels[0].hard = HardTruth::Dark;
     meter.add(truth, std::vector<float>{0.0f, 0.0f, 1.0f, -1.0f});
     EXPECT_EQ(meter.figures().pairs, 3u) << "the truth itself changed";
-    truth[0].hard = HardTruth::Away;
+    truth.pixels[0].hard = HardTruth::Away;
     meter.add(truth, std::vector<float>{0.0f, 0.0f, 1.0f, -1.0f});
     EXPECT_EQ(meter.figures().pairs, 5u);
     EXPECT_NEAR(meter.figures().mean(), 0.1, 1e-4);
+    meter.add(truth, std::vector<float>{-1.0f, 0.0f, 1.0f, -1.0f});
+    EXPECT_EQ(meter.figures().pairs, 6u) << "the result does not reach the pixel";
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ Scene build() {
     const auto camera = [&](const char* name, const glm::vec3& eye, const glm::vec3& target, float fieldOfView) {
         b.camera(name, kOrigin + eye, kOrigin + target, fieldOfView);
     };
-    camera("overview", {1.15f, 2.75f, 6.6f}, {-0.15f, 0.5f, -0.6f}, 0.72f);
+    camera("overview", {1.3f, 2.75f, 6.6f}, {0.02f, 0.5f, -0.6f}, 0.72f);
     camera("sand", kSand + glm::vec3(0.5f, 0.8f, 1.35f), kSand + glm::vec3(-0.15f, 0.08f, -0.1f), 0.75f);
     camera("plates", kPlates + glm::vec3(0.45f, 0.95f, 2.0f), kPlates + glm::vec3(-0.1f, 0.18f, 0.05f), 0.72f);
     camera("contacts", kContacts + glm::vec3(0.35f, 0.55f, 1.3f), kContacts + glm::vec3(0.0f, 0.15f, 0.0f), 0.72f);

@@ -130,7 +130,7 @@ void addLights(Lab& lab) {
     addDeskLamp(lab, wall, {wall.x - 0.3f, 0.0f, wall.z + 0.1f});
     const glm::vec3 contact = kContacts + glm::vec3(-0.42f, 0.33f, 0.10f);
     addPoint(lab, "contact lamp", contact, kWhite, 4.0f, 3.5f, 0.006f);
-    addDeskLamp(lab, contact, {contact.x - 0.1f, kMat, contact.z - 0.22f});
+    addDeskLamp(lab, contact, {contact.x - 0.34f, kMat, contact.z - 0.06f});
     const glm::vec3 cards = kSheets + glm::vec3(-0.1f, kTable + 0.42f, -0.28f);
     addPoint(lab, "card lamp", cards, kWhite, 4.4f, 4.0f, 0.012f);
     addDeskLamp(lab, cards, {cards.x + 0.18f, kTable, cards.z - 0.06f});

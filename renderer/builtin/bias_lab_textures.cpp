@@ -54,7 +54,7 @@ Image paintGrid(std::uint32_t size) {
 
 // A net of threads with a flower in the middle of every repeat, a smaller one at its corners, and picots around them.
 Image paintLace(std::uint32_t size) {
-    constexpr float kMesh = 18.0f, kThread = 0.0042f;  // of a repeat of 0.4 m: meshes of 16 mm, threads of 3.4 mm
+    constexpr float kMesh = 14.0f, kThread = 0.0062f;  // of a repeat of 0.4 m: meshes of 20 mm, threads of 5 mm
     struct Flower {
         float inside, solid;  // positive within its outline, and where it is not pierced
     };

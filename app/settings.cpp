@@ -128,9 +128,11 @@ void addSettings(CLI::App& command, Settings& s) {
         ->check(CLI::IsMember({4, 8}))
         ->capture_default_str();
     command
-        .add_option("--bias", s.bias,
-                    "Depth bias: oriented; paper (its listing 7, maps drawn with slope factor 1); hardware (maps drawn "
-                    "with factors 4096 and 2); hardware-no-normals (and faces that look away ask the map too); none")
+        .add_option(
+            "--bias", s.bias,
+            "Depth bias: oriented; oriented-constant (one depth for all texels, maps drawn with slope factor 1); paper "
+            "(that, and faces that look away ask the map, too: its listing 7); hardware (maps drawn "
+            "with factors 4096 and 2); hardware-no-normals (and faces that look away ask the map too); none")
         ->check(CLI::IsMember(biasNames()))
         ->capture_default_str();
     command.add_option("--hardware-bias", s.hardwareBias,
@@ -168,18 +170,20 @@ void addSettings(CLI::App& command, Settings& s) {
 }
 
 const std::vector<std::string>& biasNames() {
-    static const std::vector<std::string> names = {"oriented", "paper", "hardware", "hardware-no-normals", "none"};
+    static const std::vector<std::string> names = {"oriented", "oriented-constant",   "paper",
+                                                   "hardware", "hardware-no-normals", "none"};
     return names;
 }
 
 void setBias(const std::string& name, renderer::RendererDesc& desc) {
     if (std::ranges::find(biasNames(), name) == biasNames().end())
         throw UsageError(fmt::format("There is no depth bias '{}': choose {}.", name, fmt::join(biasNames(), ", ")));
+    const bool constant = name == "oriented-constant" || name == "paper";
     desc.depthBias = name == "oriented" ? DepthBias::Oriented
-                     : name == "paper"  ? DepthBias::OrientedConstant
+                     : constant         ? DepthBias::OrientedConstant
                                         : DepthBias::Unbiased;
     desc.facedAwayIsDark = name != "paper" && name != "hardware-no-normals";
-    desc.shadowDrawing.bias = name == "paper"                ? kPaperBias
+    desc.shadowDrawing.bias = constant                       ? kPaperBias
                               : name.starts_with("hardware") ? kTypicalHardwareBias
                                                              : renderer::HardwareBias{};
 }

@@ -89,9 +89,10 @@ Interval depthOfPlane(const ShadowViewModel& view, const ReceiverPlane& plane, I
         const Interval most = abs(plane.slopeX) + abs(plane.slopeY);
         rise = view.reversed ? max(rise, -most) : min(rise, most);
     }
-    // The same may be summed up from the texel next to it.
+    // The same may be summed up from the atlas' first texel on.
     const Interval depth = plane.depth + rise;
-    const double error = 2 * kFloatRoundoff * (plane.slopeX.magnitude() + plane.slopeY.magnitude());
+    const auto summed = [](Interval slope, Interval px) { return slope.magnitude() * (1 + px.magnitude()); };
+    const double error = 4 * kFloatRoundoff * (summed(plane.slopeX, plane.xPx) + summed(plane.slopeY, plane.yPx));
     return clamp({depth.lo - error, depth.hi + error}, 0.0, 1.0);
 }
 

@@ -65,6 +65,33 @@ double rowLength(const float* m, int row) {
     return std::hypot(double(m[row]), double(m[row + 4]), double(m[row + 8]));
 }
 
+struct Row {
+    double x, y, z;
+};
+Row cross(const Row& a, const Row& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// See GpuShadowView. With clip.xyw = (x p, y p, z p) up to constants, a plane's ndc and the inverse of its linear depth
+// (orthographic: the depth itself) depend on each other linearly, with the cross products of the rows as coefficients.
+bool setPlane(const float* m, bool orthographic, double b, gpu::GpuShadowView& v) {
+    const auto row = [&](int i, double scale) {
+        return Row{double(m[i]) * scale, double(m[i + 4]) * scale, double(m[i + 8]) * scale};
+    };
+    const Row x = row(0, 1.0), y = row(1, 1.0), z = orthographic ? row(2, 1.0 / b) : row(3, 1.0);
+    const Row across[] = {cross(y, z), cross(z, x), cross(x, y)};
+    const double area = std::hypot(across[2].x, across[2].y, across[2].z);
+    if (!(area > 0.0)) return false;
+    const double slope = orthographic ? -b : b;
+    gpu::vec4* const out[] = {&v.planeX, &v.planeY, &v.planeZ};
+    for (int i = 0; i < 3; ++i)
+        *out[i] = {static_cast<float>(across[i].x / area), static_cast<float>(across[i].y / area),
+                   static_cast<float>(across[i].z / area), 0.0f};
+    v.planeX.w = static_cast<float>(slope / double(v.pxFromNdcScale.x));
+    v.planeY.w = static_cast<float>(slope / double(v.pxFromNdcScale.y));
+    return true;
+}
+
 gpu::GpuShadowView convert(const ShadowView& view, const ShadowAtlas& atlas) {
     gpu::GpuShadowView v = {};
     for (int c = 0; c < 4; ++c) {
@@ -86,6 +113,9 @@ gpu::GpuShadowView convert(const ShadowView& view, const ShadowAtlas& atlas) {
     v.atlasAndLayer = view.atlas | view.layer << 8;
     v.pxPerMetre = {static_cast<float>(rowLength(view.clipFromWorld, 0) * 0.5 * view.widthPx),
                     static_cast<float>(rowLength(view.clipFromWorld, 1) * 0.5 * view.heightPx)};
+    if (!view.orthographic)
+        v.tangentPerNdc = {v.pxFromNdcScale.x / v.pxPerMetre.x, v.pxFromNdcScale.y / v.pxPerMetre.y};
+    if (!setPlane(view.clipFromWorld, view.orthographic, b, v)) v.pxPerMetre = {};
     v.atlasPerTexel = {1.0f / static_cast<float>(atlas.widthPx), 1.0f / static_cast<float>(atlas.heightPx)};
     return v;
 }

@@ -17,7 +17,7 @@ constexpr double kLeastCosine = 0.1;
 // A result's face normal has 16 bits, and within them it may see a face look at the light or away from it.
 constexpr double kUndecidedCosine = 1e-4;
 // A neighbour that continues a face is as flat as floats can say.
-constexpr double kFlatness = 1e-6;
+constexpr double kFlatness = 1.2e-7;
 constexpr std::size_t kPixelsAtOnce = 512;
 
 class Tracer {

@@ -34,22 +34,14 @@ float rayLength(vec2 tangent) {
 // `tangent` are the receiver's in the view. `linearPerMetre`: how much linear depth a metre across the face is.
 vec2 planeSlope(GpuShadowView view, bool orthographic, vec3 n, vec2 ndc, float linear, vec2 tangent,
                 out float linearPerMetre) {
-    vec3 x = vec3(view.clipFromWorld[0].x, view.clipFromWorld[1].x, view.clipFromWorld[2].x);
-    vec3 y = vec3(view.clipFromWorld[0].y, view.clipFromWorld[1].y, view.clipFromWorld[2].y);
-    vec3 z = orthographic ? vec3(view.clipFromWorld[0].z, view.clipFromWorld[1].z, view.clipFromWorld[2].z) /
-                                view.depthFromLinearB
-                          : vec3(view.clipFromWorld[0].w, view.clipFromWorld[1].w, view.clipFromWorld[2].w);
-    precise vec3 xy = cross(x, y);
-    precise vec2 m = vec2(dot(n, cross(y, z)), dot(n, cross(z, x)));
-    precise float mz = dot(n, xy);
-    precise float k = orthographic ? mz : m.x * ndc.x + (m.y * ndc.y + mz);
-    precise float area = sqrt(dot(xy, xy));
-    precise float least = kLeastCosine * area * (orthographic ? 1.0 : rayLength(tangent));
+    precise vec3 m = vec3(dot(n, view.planeX.xyz), dot(n, view.planeY.xyz), dot(n, view.planeZ.xyz));
+    precise float k = orthographic ? m.z : fma(m.x, ndc.x, fma(m.y, ndc.y, m.z));
+    float least = kLeastCosine * rayLength(tangent);
     if (abs(k) < least) k = k < 0.0 ? -least : least;
-    precise float across = area / abs(k);
+    precise float inverse = 1.0 / (orthographic ? k : k * linear);
+    precise float across = abs(orthographic ? inverse : inverse * linear);
     linearPerMetre = across;
-    precise float perNdc = orthographic ? -view.depthFromLinearB / k : view.depthFromLinearB / (linear * k);
-    precise vec2 slope = m * perNdc / view.pxFromNdcScale;
+    precise vec2 slope = m.xy * vec2(view.planeX.w, view.planeY.w) * inverse;
     return slope;
 }
 

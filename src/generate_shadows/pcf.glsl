@@ -19,7 +19,7 @@ float pcfVisibility(ShadowPoint s) {
             precise float left = i == 0u ? 1.0 - f.x : 1.0;
             precise float right = i == kPcfRadius ? f.x : 1.0;
             vec2 texel = first + 2.0 * vec2(i, j);
-            vec4 lit = litBy(s, planeDepthsAt(s, texel), gatherShadowTexels(s, texel));
+            vec4 lit = vec4(lessThanEqual(gatherShadowTexels(s, texel), planeDepthsAt(s, texel)));
             sum += bottom * (left * lit.x + right * lit.y) + top * (right * lit.z + left * lit.w);
         }
     }

@@ -22,10 +22,10 @@
 
 layout(constant_id = 6) const uint kPcssFilterTaps = 24;
 
-float filterTap(ShadowPoint s, PcssKernel k, vec2 corner) {
+float filterTap(ShadowPoint s, vec2 corner) {
     precise vec2 first = floor(corner);
     precise vec2 f = corner - first;
-    vec4 lit = vec4(lessThanEqual(gatherShadowTexels(s, first) * k.sign, planeDepthsAt(k, first)));
+    vec4 lit = vec4(lessThanEqual(gatherShadowTexels(s, first), planeDepthsAt(s, first)));
     precise float top = fma(f.x, lit.z - lit.w, lit.w);
     precise float bottom = fma(f.x, lit.y - lit.x, lit.x);
     precise float value = fma(f.y, bottom - top, top);
@@ -47,7 +47,7 @@ float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius) 
             otherFace(light, s, k, corner + 0.5, plane, stored);
             sum += stored > plane ? 0.0 : 1.0;
         } else {
-            sum += filterTap(s, k, clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));
+            sum += filterTap(s, clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));
         }
     }
     precise float visibility = sum * (1.0 / float(kPcssFilterTaps));
@@ -56,6 +56,8 @@ float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius) 
 
 float pcssVisibility(GpuLight light, ShadowPoint s, uvec2 pixel) {
     PcssKernel k = pcssKernelOf(light, s, pixel);
+    precise float behind = s.depth - (abs(s.slope.x) + abs(s.slope.y));
+    s.least = max(behind, s.least);
     float visibility;
     float radius = searchBlockers(light, s, k, visibility);
     return radius < 0.0 ? visibility : filterPenumbra(light, s, k, radius);

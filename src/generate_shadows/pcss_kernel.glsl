@@ -1,4 +1,4 @@
-// The kernel of a soft shadow: where its taps lie in the map, and at which depth the receiver's plane is there.
+// The kernel of a soft shadow: where its taps lie in the map.
 #ifndef GNOMON_GENERATE_SHADOWS_PCSS_KERNEL_GLSL
 #define GNOMON_GENERATE_SHADOWS_PCSS_KERNEL_GLSL
 
@@ -9,15 +9,10 @@ const float kNearestBlocker = 0.1;
 // A texel that touches a tap's bilinear footprint is at most this far aside.
 const float kTapTexels = 1.5;
 
-// Depths here are device depths with the sign that makes greater ones nearer to the light.
 struct PcssKernel {
     vec2 corner;  // the receiver's place less half a texel: whole numbers there are texels
     vec2 right;   // texels per tangent (perspective) or per metre, along the pattern's axes, which the pixel turns, in
     vec2 down;    // the disk that the receiver sees
-    float sign;
-    float depth;  // of the receiver's plane at the receiver,
-    vec2 slope;   // per texel,
-    float least;  // and its least value: at most one texel's slope behind the receiver
     float texel;     // one texel in the unit of radii
     float widest;    // radius of the search, without its margin of a texel
     float radius0;   // radius of the source's disk at depth d: radius0 + radius1 * d, radius1 at least 0
@@ -55,27 +50,22 @@ PcssKernel pcssKernelOf(GpuLight light, ShadowPoint s, uvec2 pixel) {
     vec2 pxPerUnit = shadowViews[s.view].pxPerMetre;
     precise float r = light.sourceRadius;
     PcssKernel k;
-    k.sign = s.reversedZ ? 1.0 : -1.0;
     precise float radius0, radius1, widest;
     if (isOrthographicView(shadowViews[s.view])) {
-        radius1 = -r * inverseB * k.sign;
+        radius1 = -r * inverseB * s.sign;
         radius0 = r * (s.linear + a * inverseB);
-        widest = max(s.reversedZ ? radius0 + radius1 : radius0, 0.0);
+        widest = max(s.sign > 0.0 ? radius0 + radius1 : radius0, 0.0);
     } else {
         precise float seen = r / s.linear;
-        radius1 = r * inverseB * k.sign;
+        radius1 = r * inverseB * s.sign;
         radius0 = -r * (a * inverseB) - seen;
         widest = (1.0 / kNearestBlocker - 1.0) * seen;
     }
     precise float texel = 1.0 / max(pxPerUnit.x, pxPerUnit.y);
     precise float cut = min(widest, float(kMaxPcssRadiusPx) * texel);
-    precise float behind = s.depth * k.sign - (abs(s.slope.x) + abs(s.slope.y));
     precise vec2 corner = s.px - 0.5;
     placeDisk(s, pxPerUnit, turnOf(pixel), k);
     k.corner = corner;
-    k.depth = s.depth * k.sign;
-    k.slope = s.slope * k.sign;
-    k.least = max(behind, s.reversedZ ? 0.0 : -1.0);
     k.texel = texel;
     k.widest = cut;
     k.radius0 = radius0;
@@ -112,13 +102,5 @@ bool mayLeave(ShadowPoint s, PcssKernel k, float radius) {
 }
 
 #include "generate_shadows/point_faces.glsl"
-
-// The receiver's plane at the 2x2 texels whose first one is `first`, in the order of textureGather.
-vec4 planeDepthsAt(PcssKernel k, vec2 first) {
-    precise vec2 away = first - k.corner;
-    precise float depth = fma(k.slope.x, away.x, fma(k.slope.y, away.y, k.depth));
-    precise vec4 depths = depth + vec4(k.slope.y, k.slope.x + k.slope.y, k.slope.x, 0.0);
-    return max(depths, vec4(k.least));
-}
 
 #endif

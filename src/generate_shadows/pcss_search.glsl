@@ -40,13 +40,14 @@ bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, out float needed, o
         bool known;
         vec2 bounds = shadowBoundsOver(s.view, s.px - extent, s.px + extent, known);
         if (!known) return false;
-        float nearest = s.reversedZ ? bounds.y : -bounds.x;
-        float farthest = s.reversedZ ? bounds.x : -bounds.y;
-        float rise = dot(abs(k.slope), extent);
-        float slack = 1e-6 + 1e-5 * rise;  // the taps' own rounding
-        if (nearest <= max(k.depth - rise - slack, k.least)) return true;
+        float nearest = s.sign > 0.0 ? bounds.y : -bounds.x;
+        float farthest = s.sign > 0.0 ? bounds.x : -bounds.y;
+        float rise = dot(abs(s.slope), extent);
+        // The taps' own rounding: their planes are summed up from the atlas' first texel, up to 16384 aside.
+        float slack = 1e-6 + 1e-5 * rise + 4e-3 * (abs(s.slope.x) + abs(s.slope.y));
+        if (nearest <= max(s.depth - rise - slack, s.least)) return true;
         visibility = 0.0;
-        if (i == 0u && farthest > max(k.depth + rise + slack, k.least)) return true;
+        if (i == 0u && farthest > max(s.depth + rise + slack, s.least)) return true;
         visibility = 1.0;
         // The region of the source grows toward the light.
         float seen = fma(k.radius1, nearest, k.radius0) + kTapTexels * k.texel;
@@ -81,8 +82,8 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visi
             vec2 offset = tapOffset(k, direction);
             direction = nextDirection(direction);
             precise vec2 first = floor(fma(offset, vec2(radius), k.corner));
-            vec4 stored = gatherShadowTexels(s, first) * k.sign;
-            countBlockers(planeDepthsAt(k, first), stored, fma(radius, inverse, farthest0), found);
+            vec4 stored = gatherShadowTexels(s, first);
+            countBlockers(planeDepthsAt(s, first), stored, fma(radius, inverse, farthest0), found);
         }
     } else {
         for (uint i = 0u; i < frame.random.z; ++i) {
@@ -98,8 +99,8 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visi
                 stored = vec4(storedThere);
             } else {
                 precise vec2 first = floor(clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));
-                plane = planeDepthsAt(k, first);
-                stored = gatherShadowTexels(s, first) * k.sign;
+                plane = planeDepthsAt(s, first);
+                stored = gatherShadowTexels(s, first);
             }
             countBlockers(plane, stored, fma(radius, inverse, farthest0), found);
         }

@@ -20,8 +20,8 @@ void otherFace(GpuLight light, ShadowPoint s, PcssKernel k, vec2 px, out float p
     vec3 y = viewRow(own, 1u);
     precise vec3 direction = viewRow(own, 3u) + x * (ndc.x / dot(x, x)) + y * (ndc.y / dot(y, y));
     precise vec2 away = px - s.px;
-    precise float planeDepth = fma(k.slope.x, away.x, fma(k.slope.y, away.y, k.depth));
-    precise float depth = clamp(max(planeDepth, k.least) * k.sign, 0.0, 1.0);
+    precise float planeDepth = fma(s.slope.x, away.x, fma(s.slope.y, away.y, s.depth));
+    precise float depth = clamp(max(planeDepth, s.least) * s.sign, 0.0, 1.0);
     precise float linear = shadowViews[own].depthFromLinearB / (depth - shadowViews[own].depthFromLinearA);
 
     uint other = light.shadowView + cubeFace(direction);
@@ -43,7 +43,7 @@ void otherFace(GpuLight light, ShadowPoint s, PcssKernel k, vec2 px, out float p
     receiver = clamp(receiver, 0.0, 1.0);
     precise float inverse = (there - otherA) / otherB * clip.z;  // 1 / own linear depth
     precise float asOwn = shadowViews[own].depthFromLinearA + shadowViews[own].depthFromLinearB * inverse;
-    stored = asOwn * k.sign;
+    stored = asOwn * s.sign;
     // The comparison is the other face's; what is told agrees with it.
     bool occludes = reversed ? there > receiver : there < receiver;
     plane = occludes ? -2.0 : 2.0;

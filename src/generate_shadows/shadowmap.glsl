@@ -7,20 +7,23 @@
 #include "shading/light_tests.glsl"
 #include "shading/receiver.glsl"
 
-// A receiver in a shadow view, biased and ready to be compared.
+// A receiver in a shadow view, biased and ready to be compared. Device depths here have the sign that makes greater ones
+// nearer to the light.
 struct ShadowPoint {
     vec2 px;       // in the atlas, texel centres at .5; may lie outside the rectangle
     vec2 rectMin;  // the rectangle's first pixel
     vec2 rectMax;  // one past its last
-    float depth;   // device depth at px
-    vec2 slope;    // of the receiver's plane: device depth per texel
+    float sign;    // times a stored depth
+    float depth;   // of the receiver's plane at px,
+    float origin;  // at the centre of the atlas' first texel,
+    vec2 slope;    // per texel,
+    float least;   // and nowhere less than this: what is as far as the view sees does not occlude
     float linear;  // the receiver's linear depth, without bias, metres
     vec2 tangent;  // perspective: lateral over linear depth
     uint view;
     uint atlas;
     float layer;
     vec2 atlasPerTexel;
-    bool reversedZ;
     bool inFront;  // of the light; else nothing can occlude it
 };
 
@@ -58,10 +61,17 @@ ShadowPoint shadowPointIn(uint viewIndex, GpuLight light, Receiver receiver) {
     precise vec2 ndc = clip.xy / clip.w;
     precise vec2 px = ndc * view.pxFromNdcScale + view.pxFromNdcOffset;
     s.px = px;
-    precise vec2 tangent = orthographic ? vec2(0.0) : ndc * view.pxFromNdcScale / view.pxPerMetre;
+    precise vec2 tangent = ndc * view.tangentPerNdc;
     s.tangent = tangent;
-    s.depth = biasedDepth(view, orthographic, light, receiver, ndc, s.linear, tangent, s.slope);
-    s.reversedZ = (view.flags & kShadowViewReversedZBit) != 0u;
+    vec2 slope;
+    float depth = biasedDepth(view, orthographic, light, receiver, ndc, s.linear, tangent, slope);
+    bool reversedZ = (view.flags & kShadowViewReversedZBit) != 0u;
+    s.sign = reversedZ ? 1.0 : -1.0;
+    s.least = reversedZ ? 0.0 : -1.0;
+    s.depth = depth * s.sign;
+    s.slope = slope * s.sign;
+    precise float origin = s.depth - fma(s.slope.x, px.x - 0.5, s.slope.y * (px.y - 0.5));
+    s.origin = origin;
     s.rectMin = view.rectMinPx;
     s.rectMax = view.rectMaxPx;
     s.atlas = view.atlasAndLayer & 0xFFu;
@@ -70,26 +80,16 @@ ShadowPoint shadowPointIn(uint viewIndex, GpuLight light, Receiver receiver) {
     return s;
 }
 
-// Depth of the receiver's plane at a place in the atlas.
-float planeDepthAt(ShadowPoint s, vec2 px) {
-    precise vec2 away = px - s.px;
-    precise float depth = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
-    return clamp(depth, 0.0, 1.0);
+// Depth of the receiver's plane at a texel's centre.
+float planeDepthAt(ShadowPoint s, vec2 texel) {
+    precise float depth = fma(s.slope.x, texel.x, fma(s.slope.y, texel.y, s.origin));
+    return max(depth, s.least);
 }
 // At the 2x2 texels whose first one is `texel`, in the order of textureGather: (0,1), (1,1), (1,0), (0,0).
 vec4 planeDepthsAt(ShadowPoint s, vec2 texel) {
-    precise vec2 away = texel + 0.5 - s.px;
-    precise float depth = s.depth + (s.slope.x * away.x + s.slope.y * away.y);
+    precise float depth = fma(s.slope.x, texel.x, fma(s.slope.y, texel.y, s.origin));
     precise vec4 depths = depth + vec4(s.slope.y, s.slope.x + s.slope.y, s.slope.x, 0.0);
-    return clamp(depths, 0.0, 1.0);
-}
-
-// 1 where the receiver is at or before the stored depth.
-float litBy(ShadowPoint s, float receiverDepth, float stored) {
-    return (s.reversedZ ? stored <= receiverDepth : stored >= receiverDepth) ? 1.0 : 0.0;
-}
-vec4 litBy(ShadowPoint s, vec4 receiverDepths, vec4 stored) {
-    return s.reversedZ ? vec4(lessThanEqual(stored, receiverDepths)) : vec4(greaterThanEqual(stored, receiverDepths));
+    return max(depths, vec4(s.least));
 }
 
 float fetchAtlas(uint atlas, float layer, ivec2 texel) {
@@ -103,15 +103,15 @@ float fetchAtlas(uint atlas, float layer, ivec2 texel) {
     }
 }
 
-// The 2x2 texels whose first one is `texel`, in the order of textureGather.
+// What is stored at the 2x2 texels whose first one is `texel`, in the order of textureGather.
 vec4 gatherShadowTexels(ShadowPoint s, vec2 texel) {
     precise vec3 at = vec3((texel + 1.0) * s.atlasPerTexel, s.layer);
-    if (kShadowAtlases == 1u) return textureGather(sampler2DArray(shadowAtlas0, shadowSampler), at);
+    if (kShadowAtlases == 1u) return textureGather(sampler2DArray(shadowAtlas0, shadowSampler), at) * s.sign;
     switch (s.atlas) {
-        case 0u: return textureGather(sampler2DArray(shadowAtlas0, shadowSampler), at);
-        case 1u: return textureGather(sampler2DArray(shadowAtlas1, shadowSampler), at);
-        case 2u: return textureGather(sampler2DArray(shadowAtlas2, shadowSampler), at);
-        default: return textureGather(sampler2DArray(shadowAtlas3, shadowSampler), at);
+        case 0u: return textureGather(sampler2DArray(shadowAtlas0, shadowSampler), at) * s.sign;
+        case 1u: return textureGather(sampler2DArray(shadowAtlas1, shadowSampler), at) * s.sign;
+        case 2u: return textureGather(sampler2DArray(shadowAtlas2, shadowSampler), at) * s.sign;
+        default: return textureGather(sampler2DArray(shadowAtlas3, shadowSampler), at) * s.sign;
     }
 }
 

@@ -66,6 +66,14 @@ struct GpuShadowView {
     uint boundsRow;         // blocks of the finest level in a row,
     uint boundsBlocks;      // and in all; 0: the view has no bounds
     uint reserved;
+    // A plane with unit normal n, in the view: with m = (n planeX, n planeY, n planeZ), the normal's part along the ray
+    // through ndc, per metre of linear depth, is m.x ndc.x + m.y ndc.y + m.z = k (orthographic: m.z), and the slope of
+    // its device depth per texel m.xy * (planeX.w, planeY.w) / (k * linear depth, orthographic: k).
+    vec4 planeX;
+    vec4 planeY;
+    vec4 planeZ;         // w unused
+    vec2 tangentPerNdc;  // lateral over linear depth; orthographic: 0
+    vec2 reserved2;
 };
 
 // A cell of the shadow bounds to be made this frame.
@@ -123,7 +131,7 @@ struct GpuEvaluateHead {
 
 #ifdef __cplusplus
 static_assert(sizeof(GpuLight) == 96);
-static_assert(sizeof(GpuShadowView) == 144);
+static_assert(sizeof(GpuShadowView) == 208);
 static_assert(sizeof(GpuShadowBoundsCell) == 32);
 static_assert(sizeof(GpuFrame) == 13 * 16);
 static_assert(sizeof(GpuCounters) == 48);

@@ -55,7 +55,7 @@ TEST(Floor, OfOneTileByHand) {
     EXPECT_DOUBLE_EQ(hierarchical.fetches, 64);
 
     const PassNeed generate = *needOf("generate_shadows", counts, filter);
-    const double receivers = 64 * (4 + 4 + 2), lights = 2 * 96, words = 3 * 4, early = 8, views = 3 * 144;
+    const double receivers = 64 * (4 + 4 + 2), lights = 2 * 96, words = 3 * 4, early = 8, views = 3 * 208;
     EXPECT_DOUBLE_EQ(generate.bytes, receivers + lights + words + early + views + 2 * 64 * 4 + 5 * 4 + 64);
     EXPECT_DOUBLE_EQ(generate.fetches, 3 * 64 + 2 * 64);
     EXPECT_DOUBLE_EQ(generate.gathers, 2 * 64 * 4 + 64 * 9);

@@ -50,7 +50,9 @@ std::vector<MemberLayout> gpuShadowView() {
             MEMBER(GpuShadowView, atlasAndLayer),    MEMBER(GpuShadowView, pxPerMetre),
             MEMBER(GpuShadowView, atlasPerTexel),    MEMBER(GpuShadowView, boundsFirst),
             MEMBER(GpuShadowView, boundsRow),        MEMBER(GpuShadowView, boundsBlocks),
-            MEMBER(GpuShadowView, reserved)};
+            MEMBER(GpuShadowView, reserved),         MEMBER(GpuShadowView, planeX),
+            MEMBER(GpuShadowView, planeY),           MEMBER(GpuShadowView, planeZ),
+            MEMBER(GpuShadowView, tangentPerNdc),    MEMBER(GpuShadowView, reserved2)};
 }
 
 std::vector<MemberLayout> gpuShadowBoundsCell() {

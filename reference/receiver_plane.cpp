@@ -89,10 +89,9 @@ Interval depthOfPlane(const ShadowViewModel& view, const ReceiverPlane& plane, I
         const Interval most = abs(plane.slopeX) + abs(plane.slopeY);
         rise = view.reversed ? max(rise, -most) : min(rise, most);
     }
-    // The same may be summed up from the atlas' first texel on.
+    // The same may be summed up from the texel next to it.
     const Interval depth = plane.depth + rise;
-    const auto summed = [](Interval slope, Interval px) { return slope.magnitude() * (1 + px.magnitude()); };
-    const double error = 4 * kFloatRoundoff * (summed(plane.slopeX, plane.xPx) + summed(plane.slopeY, plane.yPx));
+    const double error = 2 * kFloatRoundoff * (plane.slopeX.magnitude() + plane.slopeY.magnitude());
     return clamp({depth.lo - error, depth.hi + error}, 0.0, 1.0);
 }
 

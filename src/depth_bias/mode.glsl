@@ -9,4 +9,6 @@ layout(constant_id = 10) const uint kFacedAwayIsDark = 1;  // 0: pixels that loo
 
 const bool kNeedsFaceNormals = kDepthBias != kDepthBiasUnbiased || kFacedAwayIsDark != 0u;
 
+const bool kComparesPlanes = kDepthBias == kDepthBiasOriented;  // else one depth for all texels
+
 #endif

@@ -1,5 +1,5 @@
 // Visibility provider "hard": one texel, one comparison, at that texel's centre.
 float hardVisibility(ShadowPoint s) {
-    vec2 texel = clamp(floor(s.px), s.rectMin, s.rectMax - 1.0);
+    vec2 texel = clamp(floor(s.corner + 0.5), s.rectMin, s.rectMax - 1.0);
     return fetchAtlas(s.atlas, s.layer, ivec2(texel)) * s.sign <= planeDepthAt(s, texel) ? 1.0 : 0.0;
 }

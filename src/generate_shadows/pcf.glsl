@@ -8,7 +8,7 @@
 // weights are exact, so that every pipeline and device agrees.
 float pcfVisibility(ShadowPoint s) {
     float border = float(kPcfRadius) + 1.0;
-    precise vec2 corner = clamp(s.px, s.rectMin + border, s.rectMax - border) - (0.5 + float(kPcfRadius));
+    precise vec2 corner = clamp(s.corner, s.rectMin + border - 0.5, s.rectMax - border - 0.5) - float(kPcfRadius);
     precise vec2 first = floor(corner);
     precise vec2 f = corner - first;
     precise float sum = 0.0;

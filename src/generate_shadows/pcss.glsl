@@ -41,7 +41,7 @@ float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius) 
         precise float away = share * radius;
         vec2 offset = tapOffset(k, direction);
         direction = nextDirection(direction);
-        precise vec2 corner = fma(offset, vec2(away), k.corner);
+        precise vec2 corner = fma(offset, vec2(away), s.corner);
         if (!inside && leavesFace(s, k, corner)) {
             float plane, stored;
             otherFace(light, s, k, corner + 0.5, plane, stored);

@@ -10,7 +10,6 @@ const float kNearestBlocker = 0.1;
 const float kTapTexels = 1.5;
 
 struct PcssKernel {
-    vec2 corner;  // the receiver's place less half a texel: whole numbers there are texels
     vec2 right;   // texels per tangent (perspective) or per metre, along the pattern's axes, which the pixel turns, in
     vec2 down;    // the disk that the receiver sees
     float texel;     // one texel in the unit of radii
@@ -63,9 +62,7 @@ PcssKernel pcssKernelOf(GpuLight light, ShadowPoint s, uvec2 pixel) {
     }
     precise float texel = 1.0 / max(pxPerUnit.x, pxPerUnit.y);
     precise float cut = min(widest, float(kMaxPcssRadiusPx) * texel);
-    precise vec2 corner = s.px - 0.5;
     placeDisk(s, pxPerUnit, turnOf(pixel), k);
-    k.corner = corner;
     k.texel = texel;
     k.widest = cut;
     k.radius0 = radius0;
@@ -98,7 +95,7 @@ vec2 tapExtent(PcssKernel k, float radius) {
 
 bool mayLeave(ShadowPoint s, PcssKernel k, float radius) {
     vec2 extent = tapExtent(k, radius);
-    return any(lessThan(s.px - extent, s.rectMin)) || any(greaterThan(s.px + extent, s.rectMax));
+    return any(lessThan(s.corner + 0.5 - extent, s.rectMin)) || any(greaterThan(s.corner + 0.5 + extent, s.rectMax));
 }
 
 #include "generate_shadows/point_faces.glsl"

@@ -38,13 +38,12 @@ bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, out float needed, o
     for (uint i = 0u; i < 2u; ++i) {
         vec2 extent = tapExtent(k, needed);
         bool known;
-        vec2 bounds = shadowBoundsOver(s.view, s.px - extent, s.px + extent, known);
+        vec2 bounds = shadowBoundsOver(s.view, s.corner + 0.5 - extent, s.corner + 0.5 + extent, known);
         if (!known) return false;
         float nearest = s.sign > 0.0 ? bounds.y : -bounds.x;
         float farthest = s.sign > 0.0 ? bounds.x : -bounds.y;
         float rise = dot(abs(s.slope), extent);
-        // The taps' own rounding: their planes are summed up from the atlas' first texel, up to 16384 aside.
-        float slack = 1e-6 + 1e-5 * rise + 4e-3 * (abs(s.slope.x) + abs(s.slope.y));
+        float slack = 1e-6 + 1e-5 * rise;  // the taps' own rounding
         if (nearest <= max(s.depth - rise - slack, s.least)) return true;
         visibility = 0.0;
         if (i == 0u && farthest > max(s.depth + rise + slack, s.least)) return true;
@@ -81,7 +80,7 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visi
             if (radius > needed && !found.allOcclude) break;  // beyond, there is no blocker
             vec2 offset = tapOffset(k, direction);
             direction = nextDirection(direction);
-            precise vec2 first = floor(fma(offset, vec2(radius), k.corner));
+            precise vec2 first = floor(fma(offset, vec2(radius), s.corner));
             vec4 stored = gatherShadowTexels(s, first);
             countBlockers(planeDepthsAt(s, first), stored, fma(radius, inverse, farthest0), found);
         }
@@ -90,7 +89,7 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visi
             float radius = searchRadius(i, reach);
             vec2 offset = tapOffset(k, direction);
             direction = nextDirection(direction);
-            precise vec2 corner = fma(offset, vec2(radius), k.corner);
+            precise vec2 corner = fma(offset, vec2(radius), s.corner);
             vec4 plane, stored;
             if (leavesFace(s, k, corner)) {
                 float planeThere, storedThere;

@@ -19,9 +19,7 @@ void otherFace(GpuLight light, ShadowPoint s, PcssKernel k, vec2 px, out float p
     vec3 x = viewRow(own, 0u);
     vec3 y = viewRow(own, 1u);
     precise vec3 direction = viewRow(own, 3u) + x * (ndc.x / dot(x, x)) + y * (ndc.y / dot(y, y));
-    precise vec2 away = px - s.px;
-    precise float planeDepth = fma(s.slope.x, away.x, fma(s.slope.y, away.y, s.depth));
-    precise float depth = clamp(max(planeDepth, s.least) * s.sign, 0.0, 1.0);
+    precise float depth = clamp(planeDepthAt(s, px - 0.5) * s.sign, 0.0, 1.0);
     precise float linear = shadowViews[own].depthFromLinearB / (depth - shadowViews[own].depthFromLinearA);
 
     uint other = light.shadowView + cubeFace(direction);

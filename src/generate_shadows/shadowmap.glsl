@@ -10,12 +10,11 @@
 // A receiver in a shadow view, biased and ready to be compared. Device depths here have the sign that makes greater ones
 // nearer to the light.
 struct ShadowPoint {
-    vec2 px;       // in the atlas, texel centres at .5; may lie outside the rectangle
+    vec2 corner;   // in the atlas, less half a texel: whole numbers are texel centres; may lie outside the rectangle
     vec2 rectMin;  // the rectangle's first pixel
     vec2 rectMax;  // one past its last
     float sign;    // times a stored depth
-    float depth;   // of the receiver's plane at px,
-    float origin;  // at the centre of the atlas' first texel,
+    float depth;   // of the receiver's plane at the receiver,
     vec2 slope;    // per texel,
     float least;   // and nowhere less than this: what is as far as the view sees does not occlude
     float linear;  // the receiver's linear depth, without bias, metres
@@ -59,8 +58,8 @@ ShadowPoint shadowPointIn(uint viewIndex, GpuLight light, Receiver receiver) {
     s.inFront = clip.w > 0.0;
     s.linear = linearDepthOf(view, clip);
     precise vec2 ndc = clip.xy / clip.w;
-    precise vec2 px = ndc * view.pxFromNdcScale + view.pxFromNdcOffset;
-    s.px = px;
+    precise vec2 corner = ndc * view.pxFromNdcScale + (view.pxFromNdcOffset - 0.5);
+    s.corner = corner;
     precise vec2 tangent = ndc * view.tangentPerNdc;
     s.tangent = tangent;
     vec2 slope;
@@ -70,8 +69,6 @@ ShadowPoint shadowPointIn(uint viewIndex, GpuLight light, Receiver receiver) {
     s.least = reversedZ ? 0.0 : -1.0;
     s.depth = depth * s.sign;
     s.slope = slope * s.sign;
-    precise float origin = s.depth - fma(s.slope.x, px.x - 0.5, s.slope.y * (px.y - 0.5));
-    s.origin = origin;
     s.rectMin = view.rectMinPx;
     s.rectMax = view.rectMaxPx;
     s.atlas = view.atlasAndLayer & 0xFFu;
@@ -82,12 +79,16 @@ ShadowPoint shadowPointIn(uint viewIndex, GpuLight light, Receiver receiver) {
 
 // Depth of the receiver's plane at a texel's centre.
 float planeDepthAt(ShadowPoint s, vec2 texel) {
-    precise float depth = fma(s.slope.x, texel.x, fma(s.slope.y, texel.y, s.origin));
+    if (!kComparesPlanes) return s.depth;
+    precise vec2 away = texel - s.corner;
+    precise float depth = fma(s.slope.x, away.x, fma(s.slope.y, away.y, s.depth));
     return max(depth, s.least);
 }
 // At the 2x2 texels whose first one is `texel`, in the order of textureGather: (0,1), (1,1), (1,0), (0,0).
 vec4 planeDepthsAt(ShadowPoint s, vec2 texel) {
-    precise float depth = fma(s.slope.x, texel.x, fma(s.slope.y, texel.y, s.origin));
+    if (!kComparesPlanes) return vec4(s.depth);
+    precise vec2 away = texel - s.corner;
+    precise float depth = fma(s.slope.x, away.x, fma(s.slope.y, away.y, s.depth));
     precise vec4 depths = depth + vec4(s.slope.y, s.slope.x + s.slope.y, s.slope.x, 0.0);
     return max(depths, vec4(s.least));
 }

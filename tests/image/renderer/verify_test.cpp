@@ -103,8 +103,8 @@ View3d hiddenPlate() {
     return view;
 }
 
-// A depth bias that is 1 cm too large, and none at all.
-TEST_P(Verify, PlantedBiasErrorsAreTold) {
+// A depth bias that is 1 cm too large.
+TEST_P(Verify, ABiasThatIsACentimetreTooLargeIsTold) {
     const View3d view = hiddenPlate();
     RendererDesc desc = smallDesc(160, 90);
     desc.filter = Filter::Hard;
@@ -116,12 +116,8 @@ TEST_P(Verify, PlantedBiasErrorsAreTold) {
     const Figures planted = verified(device(), view, desc).figures;
     EXPECT_GT(planted.contactLeak, good.contactLeak + 100u);
     EXPECT_GT(planted.share(planted.contactLeak), kMostContactLeak);
-    desc.depthBias = DepthBias::Unbiased;
-    const Figures none = verified(device(), view, desc).figures;
-    EXPECT_GT(none.share(none.acne), 0.1);
-    std::printf("[ figure   ] %s: contact leak %.3f %%, with 1 cm more bias %.3f %%; acne without bias %.1f %%\n",
-                device().info().name.c_str(), 100.0 * good.share(good.contactLeak),
-                100.0 * planted.share(planted.contactLeak), 100.0 * none.share(none.acne));
+    std::printf("[ figure   ] %s: contact leak %.3f %%, with 1 cm more bias %.3f %%\n", device().info().name.c_str(),
+                100.0 * good.share(good.contactLeak), 100.0 * planted.share(planted.contactLeak));
 }
 
 // A glowing ball, lit from the side, by both rules: drawn as it is traced.

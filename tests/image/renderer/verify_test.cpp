@@ -57,6 +57,7 @@ TEST_P(Verify, AcneAndLeakStayWithinTheirLimits) {
     } const cases[] = {{"boxes", Filter::Pcss, "pcss", true},
                        {"sphere-on-plane", Filter::Pcf, "pcf", true},
                        {"masked", Filter::Hard, "hard", true},
+                       {"bias-lab", Filter::Pcss, "pcss", true},
                        {"sundial", Filter::Pcss, "pcss", false},
                        {"cloth", Filter::Pcf, "pcf", false}};
     for (const auto& [scene, filter, name, always] : cases) {

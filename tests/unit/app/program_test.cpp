@@ -121,7 +121,7 @@ TEST_F(Program, WrongUsageIsRefused) {
                                   "bench --variants never",
                                   "bench --variants inline,inline",
                                   "bench --frames 0",
-                                  "bench --preset table2",
+                                  "bench --preset table9",
                                   "bench --preset table1 --variants inline",
                                   "bench --preset figure13 --variants off",
                                   "compare one.png",

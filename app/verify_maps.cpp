@@ -23,8 +23,10 @@ constexpr Colour kNotCounted = {0.16f, 0.18f, 0.28f};
 constexpr Colour kAway = {0.22f, 0.15f, 0.05f};
 constexpr Colour kPenumbra = {0.25f, 0.95f, 0.35f};
 
-// What a pixel shows: the higher, the worse. From kDots on, single pixels are drawn as dots.
-enum Kind : std::uint8_t { kRight, kFaintLeak, kFaintAcne, kEdge, kDots, kContact = kDots, kLeak, kAcne, kKinds };
+// What a pixel shows: the higher, the worse. Errors of the resolution, and what is hardly seen, let the frame through;
+// from kDots on, single pixels are drawn as dots.
+enum Kind : std::uint8_t { kRight, kFaintLeak, kFaintAcne, kEdge, kContact, kDots, kLeak = kDots, kAcne, kKinds };
+constexpr float kOpacities[kKinds] = {0.0f, 0.6f, 0.6f, 0.5f, 1.0f, 1.0f, 1.0f};
 constexpr Colour kColours[kKinds] = {{0, 0, 0},           {0.55f, 0.80f, 1.0f}, {1.0f, 0.62f, 0.55f}, {0.95f, 0.80f, 0},
                                      {1.0f, 0.20f, 1.0f}, {0.10f, 0.50f, 1.0f}, {1.0f, 0.12f, 0.08f}};
 
@@ -61,46 +63,6 @@ Colour truthColour(const PixelTruth& truth) {
     return grey(truth.subset && truth.soft >= 0.0f ? truth.soft : hard);
 }
 
-// Pictures of the frame's size, side by side.
-class Panels {
-public:
-    Panels(const Picture& frame, std::uint32_t count) : width_(frame.width), height_(frame.height) {
-        picture_.width = count * width_ + (count - 1) * kGapPx;
-        picture_.height = height_;
-        picture_.rgb.resize(std::size_t{picture_.width} * height_ * 3);
-        for (std::size_t i = 0; i < std::size_t{picture_.width} * height_; ++i) set(i, kGap);
-    }
-    void put(std::uint32_t panel, std::size_t pixel, const Colour& colour) {
-        set(pixel / width_ * picture_.width + panel * (width_ + kGapPx) + pixel % width_, colour);
-    }
-    // `kinds` over what is there; the bad ones last and, in large pictures, larger than a pixel.
-    void putErrors(std::uint32_t panel, std::span<const std::uint8_t> kinds) {
-        const std::int64_t reach = std::min(height_ / 720u, 2u);
-        for (std::uint8_t kind = kRight + 1; kind < kKinds; ++kind)
-            for (std::size_t i = 0; i < kinds.size(); ++i)
-                if (kinds[i] == kind) putDot(panel, i, kind >= kDots ? reach : 0, kColours[kind]);
-    }
-    [[nodiscard]] const Picture& picture() const { return picture_; }
-
-private:
-    void set(std::size_t at, const Colour& colour) {
-        for (std::size_t c = 0; c < 3; ++c)
-            picture_.rgb[3 * at + c] =
-                static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(colour[c], 0.0f, 1.0f)));
-    }
-    void putDot(std::uint32_t panel, std::size_t pixel, std::int64_t reach, const Colour& colour) {
-        const auto x = static_cast<std::int64_t>(pixel % width_), y = static_cast<std::int64_t>(pixel / width_);
-        for (std::int64_t v = std::max<std::int64_t>(y - reach, 0); v <= std::min<std::int64_t>(y + reach, height_ - 1);
-             ++v)
-            for (std::int64_t u = std::max<std::int64_t>(x - reach, 0);
-                 u <= std::min<std::int64_t>(x + reach, width_ - 1); ++u)
-                put(panel, static_cast<std::size_t>(v * width_ + u), colour);
-    }
-
-    std::uint32_t width_, height_;
-    Picture picture_;
-};
-
 Colour colourAt(const Picture& picture, std::size_t pixel) {
     Colour out;
     for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<float>(picture.rgb[3 * pixel + c]) / 255.0f;
@@ -110,6 +72,50 @@ float brightnessAt(const Picture& picture, std::size_t pixel) {
     const Colour c = colourAt(picture, pixel);
     return 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
 }
+
+// Pictures of the frame's size, side by side.
+class Panels {
+public:
+    Panels(const Picture& frame, std::uint32_t count) : width_(frame.width), height_(frame.height) {
+        picture_.width = count * width_ + (count - 1) * kGapPx;
+        picture_.height = height_;
+        picture_.rgb.resize(std::size_t{picture_.width} * height_ * 3);
+        for (std::size_t i = 0; i < std::size_t{picture_.width} * height_; ++i) set(i, kGap);
+    }
+    void put(std::uint32_t panel, std::size_t pixel, const Colour& colour) { set(placeOf(panel, pixel), colour); }
+    // `kinds` over what is there; the bad ones last and, in large pictures, larger than a pixel.
+    void putErrors(std::uint32_t panel, std::span<const std::uint8_t> kinds) {
+        const std::int64_t reach = std::min(height_ / 540u, 2u);
+        for (std::uint8_t kind = kRight + 1; kind < kKinds; ++kind)
+            for (std::size_t i = 0; i < kinds.size(); ++i)
+                if (kinds[i] == kind) putDot(panel, i, kind >= kDots ? reach : 0, kind);
+    }
+    [[nodiscard]] const Picture& picture() const { return picture_; }
+
+private:
+    [[nodiscard]] std::size_t placeOf(std::uint32_t panel, std::size_t pixel) const {
+        return pixel / width_ * picture_.width + panel * (width_ + kGapPx) + pixel % width_;
+    }
+    void set(std::size_t at, const Colour& colour) {
+        for (std::size_t c = 0; c < 3; ++c)
+            picture_.rgb[3 * at + c] =
+                static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(colour[c], 0.0f, 1.0f)));
+    }
+    void cover(std::uint32_t panel, std::size_t pixel, std::uint8_t kind) {
+        put(panel, pixel, mixed(colourAt(picture_, placeOf(panel, pixel)), kColours[kind], kOpacities[kind]));
+    }
+    void putDot(std::uint32_t panel, std::size_t pixel, std::int64_t reach, std::uint8_t kind) {
+        const auto x = static_cast<std::int64_t>(pixel % width_), y = static_cast<std::int64_t>(pixel / width_);
+        for (std::int64_t v = std::max<std::int64_t>(y - reach, 0); v <= std::min<std::int64_t>(y + reach, height_ - 1);
+             ++v)
+            for (std::int64_t u = std::max<std::int64_t>(x - reach, 0);
+                 u <= std::min<std::int64_t>(x + reach, width_ - 1); ++u)
+                cover(panel, static_cast<std::size_t>(v * width_ + u), kind);
+    }
+
+    std::uint32_t width_, height_;
+    Picture picture_;
+};
 
 }  // namespace
 

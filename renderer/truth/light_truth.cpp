@@ -16,7 +16,8 @@ constexpr int kEdgePoints = 8;
 constexpr double kLeastCosine = 0.1;
 // A result's face normal has 16 bits, and within them it may see a face look at the light or away from it.
 constexpr double kUndecidedCosine = 1e-4;
-// A neighbour that continues a face is as flat as floats can say.
+// A neighbour that continues a face is as flat as floats can say: a share of the mesh's own coordinates. (A share of
+// the world's, 4 km from the origin, would let rays out of whatever lies flat on a grazed face.)
 constexpr double kFlatness = 1.2e-7;
 constexpr std::size_t kPixelsAtOnce = 512;
 
@@ -110,9 +111,8 @@ private:
         if (!r.subsurface && cosine < 0.0) return false;
         const double texel = shadowTexelMetres(desc_.views, source_.kind, source_.position + viewsFromTraced_,
                                                r.position + viewsFromTraced_);
-        const glm::dvec3 world = glm::abs(r.position + scene_.origin());
-        const double flatness =
-            kFlatness * (1.0 + std::max({world.x, world.y, world.z})) / std::max(std::abs(cosine), 1e-2);
+        const double meshMetres = static_cast<double>(scene_.triangles()[r.triangle].meshMetres);
+        const double flatness = kFlatness * (1.0 + meshMetres) / std::max(std::abs(cosine), 1e-2);
         for (int k = 0; k < kEdgePoints; ++k) {
             const glm::dvec3 q = r.position + edgeOffset(r, toLight, texel, k);
             const glm::dvec3 end = endOfRay(source_, q, scene_.reachMetres() + 1.0);

@@ -29,6 +29,12 @@ double largest(const glm::dvec3& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
+double largestCoordinate(const std::vector<glm::vec3>& positions) {
+    float most = 0.0f;
+    for (const glm::vec3& p : positions) most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    return static_cast<double>(most);
+}
+
 struct Meeting {
     double t = 0.0;  // of the way from start to end
     glm::dvec3 barycentrics{0.0};
@@ -187,12 +193,16 @@ void TracedScene::append(const Primitive& primitive, const std::vector<glm::vec3
     const Material& material = scene_.materials[primitive.material];
     const TextureUse& use = material.baseColourTexture;
     const bool masked = material.alphaMode != AlphaMode::Opaque;
-    const double determinant = glm::determinant(glm::dmat3(worldFromObject));
+    const glm::dmat3 linear(worldFromObject);
+    const double determinant = glm::determinant(linear);
+    const double meshMetres = largestCoordinate(positions) *
+                              std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
     for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
         Triangle triangle;
         triangle.material = primitive.material;
         triangle.drawn = std::abs(determinant) > kLeastDeterminant;
         triangle.mirrored = determinant < 0.0;
+        triangle.meshMetres = static_cast<float>(meshMetres);
         MaskCorners mask;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t v = primitive.indices[i + k];

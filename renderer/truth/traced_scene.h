@@ -55,6 +55,8 @@ public:
         std::uint32_t mask = kNone;  // among the alpha-tested ones
         bool drawn = true;
         bool mirrored = false;  // the instance's matrix turned the winding around
+        /// How large its mesh's own coordinates are, as placed: floats round by a share of that, wherever the mesh is.
+        float meshMetres = 0.0f;
     };
     /// In the scene's order: instances, their primitives, their triangles (Renderer::readTriangleIds()).
     [[nodiscard]] const std::vector<Triangle>& triangles() const { return triangles_; }

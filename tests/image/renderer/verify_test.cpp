@@ -14,7 +14,7 @@ GNOMON_IMAGE_TEST_SUITE(Verify);
 constexpr double kMostAcneAndLeak = 0.001, kMostContactLeak = 0.01;
 
 struct Verified {
-    Figures figures;
+    Figures figures, subsurface;
     std::vector<float> visibility;  // of the last light
     LightTruth truth;
     HdrPicture picture;
@@ -26,7 +26,8 @@ Verified verified(const Device& device, const View3d& view, const RendererDesc& 
     out.picture = draw(renderer, view.camera, ShadowMode::Deferred).linear;
     const Pose pose = poseAt(view.scene, 0.0);
     const SceneCamera camera = posedCamera(view.scene, pose, view.camera);
-    const TracedScene traced(view.scene, pose, glm::dvec3(camera.worldFromCamera[3]));
+    const TracedScene traced(view.scene, pose, glm::dvec3(camera.worldFromCamera[3]),
+                             {desc.shadowDrawing.subsurfaceFronts, static_cast<double>(desc.subsurfaceBiasMetres)});
     const TruthExtent extent = {desc.widthPx, desc.heightPx};
     const std::vector<TruthReceiver> receivers =
         receiversOf(traced, camera, extent.widthPx, extent.heightPx, renderer.readTriangleIds());
@@ -42,7 +43,7 @@ Verified verified(const Device& device, const View3d& view, const RendererDesc& 
         completeSoftTruth(out.truth, traced, receivers, light, out.visibility);
         const LightFigures figures = figuresOf(out.truth, out.visibility, light.soft);
         out.figures += figures.opaque;
-        out.figures += figures.subsurface;
+        out.subsurface += figures.subsurface;
     }
     return out;
 }
@@ -56,6 +57,7 @@ TEST_P(Verify, AcneAndLeakStayWithinTheirLimits) {
     } const cases[] = {{"boxes", Filter::Pcss, "pcss", true},
                        {"sphere-on-plane", Filter::Pcf, "pcf", true},
                        {"masked", Filter::Hard, "hard", true},
+                       {"bias-lab", Filter::Pcss, "pcss", true},
                        {"sundial", Filter::Pcss, "pcss", false},
                        {"cloth", Filter::Pcf, "pcf", false}};
     for (const auto& [scene, filter, name, always] : cases) {
@@ -84,6 +86,69 @@ TEST_P(Verify, LostShadowsAndLightsAreTold) {
     EXPECT_GT(figuresOf(v.truth, v.visibility, false).opaque.leak, 50u);
     for (float& visibility : v.visibility) visibility = visibility < 0.0f ? visibility : 0.0f;
     EXPECT_GT(figuresOf(v.truth, v.visibility, false).opaque.acne, 5000u);
+}
+
+// In place of the ball of sphere-on-plane a plate, 6 mm above the plane, that shows its back to the camera: through it
+// the plane is seen, which it darkens.
+View3d hiddenPlate() {
+    View3d view = builtin("sphere-on-plane");
+    Primitive plate;
+    plate.positions = {{-1, 0.006f, -1}, {1, 0.006f, -1}, {1, 0.006f, 1}, {-1, 0.006f, 1}};
+    plate.indices = {0, 1, 2, 0, 2, 3};
+    for (const glm::vec3& p : plate.positions) plate.bounds.add(p);
+    for (Instance& instance : view.scene.instances) {
+        if (instance.name != "sphere") continue;
+        instance.worldFromObject = glm::mat4(1.0f);
+        view.scene.meshes[instance.mesh].primitives = {plate};
+    }
+    return view;
+}
+
+// A depth bias that is 1 cm too large.
+TEST_P(Verify, ABiasThatIsACentimetreTooLargeIsTold) {
+    const View3d view = hiddenPlate();
+    RendererDesc desc = smallDesc(160, 90);
+    desc.filter = Filter::Hard;
+    const Figures good = verified(device(), view, desc).figures;
+    EXPECT_GT(good.contacts, 300u);
+    EXPECT_LE(good.share(good.acne + good.leak), kMostAcneAndLeak);
+    EXPECT_LE(good.share(good.contactLeak), kMostContactLeak);
+    desc.biasMetres += 0.01f;
+    const Figures planted = verified(device(), view, desc).figures;
+    EXPECT_GT(planted.contactLeak, good.contactLeak + 100u);
+    EXPECT_GT(planted.share(planted.contactLeak), kMostContactLeak);
+    std::printf("[ figure   ] %s: contact leak %.3f %%, with 1 cm more bias %.3f %%\n", device().info().name.c_str(),
+                100.0 * good.share(good.contactLeak), 100.0 * planted.share(planted.contactLeak));
+}
+
+// A glowing ball, lit from the side, by both rules: drawn as it is traced.
+TEST_P(Verify, SubsurfaceRulesAreDrawnAsTheyAreTraced) {
+    View3d view = builtin("sphere-on-plane");
+    ASSERT_TRUE(parseCamera("0.6,1.3,3:0,0.6,0:30", view.scene, view.camera).ok());
+    for (Material& material : view.scene.materials) material.subsurface = material.name == "red";
+    view.scene.lights.at(0).position = {-2.0f, 2.5f, -1.0f};
+    RendererDesc desc = smallDesc(120, 68);
+    desc.filter = Filter::Hard;
+    for (const bool fronts : {false, true}) {
+        SCOPED_TRACE(fronts);
+        desc.shadowDrawing.subsurfaceFronts = fronts;
+        const Verified v = verified(device(), view, desc);
+        const Figures &skin = v.subsurface, &floor = v.figures;
+        std::printf(
+            "[ figure   ] %s: fronts %s: of %llu pairs of skin %llu lit, acne %.3f %%, leak %.3f %%, edge %.2f %%\n",
+            device().info().name.c_str(), fronts ? "kept" : "left out", static_cast<unsigned long long>(skin.pairs),
+            static_cast<unsigned long long>(skin.lit), 100.0 * skin.share(skin.acne), 100.0 * skin.share(skin.leak),
+            100.0 * skin.share(skin.edgeError));
+        EXPECT_GT(skin.pairs, 1000u);
+        EXPECT_GT(skin.lit, 100u);
+        if (fronts)
+            EXPECT_GT(skin.dark, 500u);
+        else
+            EXPECT_EQ(skin.dark, 0u);
+        EXPECT_LE(skin.share(skin.acne + skin.leak), kMostAcneAndLeak);
+        EXPECT_GT(floor.dark, 100u);
+        EXPECT_LE(floor.share(floor.acne + floor.leak), kMostAcneAndLeak);
+    }
 }
 
 // What is read is what the lighting used: with pools far too small it is evaluated, and the same.

@@ -288,6 +288,8 @@ TEST(LightTruth, CoplanarNeighboursAHundredMetresAwayAreLit) {
     const auto lit = std::ranges::count_if(truth.pixels, [](const PixelTruth& p) { return p.hard == HardTruth::Lit; });
     EXPECT_GT(lit, 5000);
     EXPECT_EQ(lit, std::ssize(truth.pixels));
+    const auto edges = std::ranges::count_if(truth.pixels, [](const PixelTruth& p) { return p.edge; });
+    EXPECT_EQ(edges, 0);
     const auto partly = std::ranges::count_if(truth.pixels, [](const PixelTruth& p) { return p.soft < 1.0f; });
     EXPECT_EQ(partly, 0);
 
@@ -302,6 +304,32 @@ TEST(LightTruth, CoplanarNeighboursAHundredMetresAwayAreLit) {
         dark += traced.blocked({stored / depth * p, light});
     }
     EXPECT_GT(dark, truth.pixels.size() / 4) << "from the depth buffer: acne";
+}
+
+// Beside a panel of 2 mm on a grazed floor, 4 km from the origin: within its footprint the floor is not unanimous.
+TEST(LightTruth, ThinPanelsMakeEdgesFarFromTheOrigin) {
+    for (const double away : {0.0, 4096.0}) {
+        SceneBuilder b;
+        b.quad({-2, 0, -2}, {-2, 0, 2}, {2, 0, 2}, {2, 0, -2});
+        b.quad({0, 0.002f, -1}, {0, 0.002f, 1}, {1, 0.002f, 1}, {1, 0.002f, -1});
+        b.quad({0, 0, -1}, {0, 0, 1}, {0, 0.002f, 1}, {0, 0.002f, -1});
+        Pose pose = restPose(b.scene);
+        for (glm::dmat4& world : pose.worldFromObject) world[3].x = away;
+        const TracedScene traced(b.scene, pose, {away, 0.0, 0.0});
+        TruthReceiver r = onFloor(-0.01, 0.1, 0);
+        r.pixelMetres = 0.01;
+        LightTruthDesc desc;
+        desc.light.position = glm::vec3(static_cast<float>(away) - 2.0f, 0.3f, 0.0f);
+        desc.light.rangeMetres = 20.0f;
+        desc.soft = false;
+        LightTruth truth = traceLight(traced, {&r, 1}, {1, 1}, desc);
+        ASSERT_EQ(truth.pixels.size(), 1u);
+        EXPECT_EQ(truth.pixels[0].hard, HardTruth::Lit);
+        EXPECT_TRUE(truth.pixels[0].edge) << away;
+        r.position.x = -0.5;
+        truth = traceLight(traced, {&r, 1}, {1, 1}, desc);
+        EXPECT_FALSE(truth.pixels[0].edge) << away;
+    }
 }
 
 TEST(ErrorOf, SoftTruthThatNobodyAskedForDoesNotCount) {

@@ -24,7 +24,7 @@
 
 namespace gnomon::reference {
 
-inline constexpr double kLeastCosine = 0.02;
+inline constexpr double kLeastCosine = 0.005;
 
 enum class DepthMode { Plane, Constant };
 

@@ -11,7 +11,7 @@
 // The bias grows by how far the rounding of the camera's depth may have moved the position off its face.
 // Other modes, to compare: the paper's listing 7 (one depth for all texels, nearer to the light or, where the face
 // looks away, farther), and no bias at all, for maps that were drawn with a hardware bias.
-// Limits: the slope of faces that are nearly edge-on to the light is cut at kLeastCosine (1.1 degrees). The map
+// Limits: the slope of faces that are nearly edge-on to the light is cut at kLeastCosine (0.3 degrees). The map
 // holds the surface as the rasterizer snapped it, 2^-4 (SwiftShader) to 2^-8 texels aside, hence the slack by slope.
 #ifndef GNOMON_DEPTH_BIAS_DEPTH_BIAS_GLSL
 #define GNOMON_DEPTH_BIAS_DEPTH_BIAS_GLSL
@@ -21,7 +21,7 @@
 #include "shading/light_tests.glsl"
 #include "shading/receiver.glsl"
 
-const float kLeastCosine = 0.02;
+const float kLeastCosine = 0.005;
 const float kSnapPx = 1.0 / 16.0;
 
 // |rays| of a view through ndc, as a multiple of linear depth; `tangent` is where: lateral over linear depth.

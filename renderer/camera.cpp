@@ -50,7 +50,7 @@ glm::dmat4 orthographic(const SceneCamera& camera, double aspect, bool reversed)
 glm::dvec3 frameOriginOf(const SceneCamera& camera) {
     constexpr double kGrid = 1024.0;
     const glm::dvec3 position(camera.worldFromCamera[3]);
-    return glm::trunc(position / kGrid) * kGrid;
+    return glm::round(position / kGrid) * kGrid;
 }
 
 Camera cameraOf(const SceneCamera& camera, const glm::dvec3& origin, std::uint32_t widthPx, std::uint32_t heightPx,

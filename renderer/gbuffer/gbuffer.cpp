@@ -17,7 +17,8 @@ constexpr std::uint32_t kMaskedSpirv[] = {
 };
 
 struct Push {
-    glm::mat4 clipFromWorld;
+    glm::mat4 clipFromView;
+    glm::vec4 viewFromWorldRows[3];
     glm::vec4 eye;
 };
 
@@ -33,6 +34,8 @@ GBufferCamera gbufferCameraOf(const Camera& camera) {
     const glm::mat3 worldFromViewRotation = glm::transpose(glm::mat3(viewFromWorld));
     const glm::mat4 rows = glm::transpose(clipFromView);
     GBufferCamera out;
+    out.viewFromWorld = viewFromWorld;
+    out.clipFromView = clipFromView;
     out.clipFromWorld = clipFromView * viewFromWorld;
     out.deviceDepth = camera.deviceDepth;
     // The row of the clip transform that grows into the scene: w for perspective, +-z for orthographic views.
@@ -135,7 +138,8 @@ void GBuffer::beginRendering(VkCommandBuffer commands, VkExtent2D active, Device
 GBufferStatistics GBuffer::drawRanges(VkCommandBuffer commands, const GpuScene& scene,
                                       const GBufferCamera& camera) const {
     GBufferStatistics statistics;
-    const Push push{camera.clipFromWorld, camera.eye};
+    const glm::mat4 rows = glm::transpose(camera.viewFromWorld);
+    const Push push{camera.clipFromView, {rows[0], rows[1], rows[2]}, camera.eye};
     vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(push), &push);
     vkCmdSetDepthCompareOp(commands,
                            camera.deviceDepth == DeviceDepth::ReversedZ ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS);

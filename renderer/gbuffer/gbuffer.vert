@@ -5,7 +5,8 @@
 #include "renderer/gpu/scene_pull.glsl"
 
 layout(push_constant) uniform Push {
-    mat4 clipFromWorld;
+    mat4 clipFromView;
+    vec4 viewFromWorldRows[3];
     vec4 eye;  // w 1: the camera's position; w 0: the direction towards an orthographic camera
 };
 
@@ -37,7 +38,12 @@ void main() {
     triangleId = triangle + item.triangleIdOffset;
 
     positionWs = transformPoint(item, pullPosition(vertex));
-    gl_Position = clipFromWorld * vec4(positionWs, 1.0);
+    // In two steps: what rounding does to the place in the view, far from the origin, it does to clip z and w alike. In one
+    // step it would do so to each, and with standard Z their quotient turns 0.1 mm of the view into centimetres.
+    const vec4 p = vec4(positionWs, 1.0);
+    gl_Position =
+        clipFromView *
+        vec4(dot(viewFromWorldRows[0], p), dot(viewFromWorldRows[1], p), dot(viewFromWorldRows[2], p), 1.0);
     texcoords = vec4(pullTexcoord(item, vertex, 0u), pullTexcoord(item, vertex, 1u));
     colour = pullColour(item, vertex);
     normalWs = face;

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Makes docs/images/lab-sand.jpg and lab-contacts.jpg: parts of the bias lab without bias, with a hardware bias and with the
-oriented one, each above its errors against ray-traced truth. Needs the built program; takes a few minutes on a CPU.
+"""Makes docs/images/lab-sand.jpg and lab-contacts.jpg: parts of the bias lab without bias, with a hardware bias and with
+the oriented one, each above its errors against ray-traced truth. Needs the built program; takes a minute or two on a CPU.
 
     scripts/bias_pictures.py [--program build/release/bin/gnomon] [--output docs/images]
 """
@@ -77,7 +77,8 @@ def main():
     parser.add_argument("--output", default="docs/images", help="a folder")
     arguments = parser.parse_args()
     for camera in PARTS:
-        composite(arguments.program, camera).save(Path(arguments.output) / f"lab-{camera}.jpg", quality=80, subsampling=0)
+        path = Path(arguments.output) / f"lab-{camera}.jpg"
+        composite(arguments.program, camera).save(path, quality=80, subsampling=0)
 
 
 if __name__ == "__main__":

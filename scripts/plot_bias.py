@@ -306,13 +306,15 @@ def write_png(figure, output):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("files", nargs="+", help="JSON files of `gnomon verify --sweep`, the one to draw large first")
+    parser.add_argument("files", nargs="+", help="JSON files of `gnomon verify --sweep`")
+    parser.add_argument("--large", metavar="SCENE", default="bias-lab", help="drawn large, if it is there")
     parser.add_argument("-o", "--output", default="docs/images/bias.png", help="a .png or .svg file")
     parser.add_argument("--contacts", action="store_true", help="leak and contact leak together on the y axis")
     arguments = parser.parse_args()
     if Path(arguments.output).suffix not in (".svg", ".png"):
         sys.exit(f"'{arguments.output}' ends neither in .svg nor in .png.")
-    figure = figure_of(bias_results.load(arguments.files), arguments.contacts)
+    sweeps = sorted(bias_results.load(arguments.files), key=lambda sweep: sweep.scene != arguments.large)
+    figure = figure_of(sweeps, arguments.contacts)
     try:
         if arguments.output.endswith(".svg"):
             figure.savefig(arguments.output, metadata={"Date": None})

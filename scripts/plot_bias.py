@@ -274,7 +274,7 @@ def draw_small(axes, scale, sweep, contacts, outer):
             kept = [i for i in kept if i != 1]  # no room beside 0
         side.set_ticklabels([text if i in kept else "" for i, text in enumerate(texts)], fontsize=7.5)
     axes.set_title(sweep.scene, fontsize=9, weight="bold", loc="left", color=TEXT, pad=3)
-    axes.set_title(short_ratio_of(sweep, contacts), fontsize=7.5, loc="right", color=FAINT, pad=3)
+    axes.text(0.97, 0.05, short_ratio_of(sweep, contacts), fontsize=7.5, ha="right", color=FAINT, transform=axes.transAxes)
 
 
 def figure_of(sweeps, contacts):

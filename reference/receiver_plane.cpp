@@ -75,7 +75,8 @@ ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, Depth
         const Interval perNdc = view.orthographic ? -(b / tilt) : b / (plane.linearDepth * tilt);
         plane.slopeX = perNdc * alpha / scaleX;
         plane.slopeY = perNdc * beta / scaleY;
-        const Interval slack = 1e-6 * (abs(a) + abs(depth - a)) + (abs(plane.slopeX) + abs(plane.slopeY)) * (1.0 / 16);
+        const Interval slack = 1e-6 * (abs(a) + abs(depth - a)) + rounded(view.depthStep) +
+                               (abs(plane.slopeX) + abs(plane.slopeY)) * (1.0 / 16);
         plane.depth = depth + slack * (view.reversed ? toward : -toward);
         result.planes.push_back(plane);
     }

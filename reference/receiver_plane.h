@@ -11,8 +11,8 @@
 // const, where (alpha, beta, gamma) = (n (r1 x a), n (a x r0), n (r0 x r1)). Perspective: 1/w, and with it device
 // depth, is linear in X and Y; orthographic: w is. The slopes per texel follow. Where the view sees the face from the
 // side, the least tilt (kLeastCosine) keeps them finite. Device depth at p starts a bias nearer to the light, which grows
-// by what the pixel may lie off its face, seen along the light's axis; and a slack of a sixteenth of the slopes and a few
-// float roundings. Without a plane (DepthMode::Constant) all texels have one depth: that of p, moved, with no slack.
+// by what the pixel may lie off its face, seen along the light's axis; and a slack of a sixteenth of the slopes, a step of
+// the atlas' depth and a few float roundings. Without a plane (DepthMode::Constant) all texels have one depth: that of p, moved, with no slack.
 //
 // Limits: all is interval arithmetic, see interval.h. What rounding could turn gives several planes.
 

@@ -45,13 +45,15 @@ DepthFromLinear depthFromLinear(double n, double f, bool orthographic, bool reve
     return reversed ? DepthFromLinear{1.0 - standard.a, -standard.b} : standard;
 }
 
-std::vector<ShadowViewModel> makeShadowViewModels(std::span<const ShadowView> views) {
+std::vector<ShadowViewModel> makeShadowViewModels(std::span<const ShadowView> views,
+                                                  std::span<const AtlasCopy> atlases) {
     std::vector<ShadowViewModel> result;
     for (const ShadowView& view : views) {
         ShadowViewModel model;
         model.clipFromWorld = fromColumnMajor(view.clipFromWorld);
         model.atlas = view.atlas;
         model.layer = view.layer;
+        if (view.atlas < atlases.size()) model.depthStep = atlases[view.atlas].depthStep;
         model.xPx = static_cast<int>(view.xPx);
         model.yPx = static_cast<int>(view.yPx);
         model.widthPx = static_cast<int>(view.widthPx);

@@ -22,6 +22,7 @@ namespace gnomon::reference {
 /// A shadow atlas image. Texels of a layer in rows; layers one after the other.
 struct AtlasCopy {
     std::uint32_t widthPx = 0, heightPx = 0, layers = 1;
+    double depthStep = 0;  ///< between neighbouring values, beyond that of floats
     std::vector<float> depth;
 
     [[nodiscard]] float at(std::uint32_t layer, std::uint32_t x, std::uint32_t y) const {
@@ -46,10 +47,13 @@ struct ShadowViewModel {
     bool orthographic = false;
     bool reversed = true;
     DepthFromLinear depth;
+    double depthStep = 0;                     ///< of the atlas
     double pxPerMetreX = 0, pxPerMetreY = 0;  ///< texels per metre, at linear depth 1 m (perspective) or anywhere
 };
 
-std::vector<ShadowViewModel> makeShadowViewModels(std::span<const ShadowView> views);
+/// `atlases`: whence the depth steps, which are 0 where there are none.
+std::vector<ShadowViewModel> makeShadowViewModels(std::span<const ShadowView> views,
+                                                  std::span<const AtlasCopy> atlases = {});
 
 /// Every GpuShadowView against the host's description of it.
 Findings checkShadowViews(std::span<const ShadowView> views, std::span<const gpu::GpuShadowView> gpuViews);

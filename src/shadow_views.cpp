@@ -74,7 +74,7 @@ Row cross(const Row& a, const Row& b) {
 
 // See GpuShadowView. With clip.xyw = (x p, y p, z p) up to constants, a plane's ndc and the inverse of its linear depth
 // (orthographic: the depth itself) depend on each other linearly, with the cross products of the rows as coefficients.
-bool setPlane(const float* m, bool orthographic, double b, gpu::GpuShadowView& v) {
+bool setPlane(const float* m, bool orthographic, double b, float depthStep, gpu::GpuShadowView& v) {
     const auto row = [&](int i, double scale) {
         return Row{double(m[i]) * scale, double(m[i + 4]) * scale, double(m[i + 8]) * scale};
     };
@@ -89,6 +89,7 @@ bool setPlane(const float* m, bool orthographic, double b, gpu::GpuShadowView& v
                    static_cast<float>(across[i].z / area), 0.0f};
     v.planeX.w = static_cast<float>(slope / double(v.pxFromNdcScale.x));
     v.planeY.w = static_cast<float>(slope / double(v.pxFromNdcScale.y));
+    v.planeZ.w = depthStep;
     return true;
 }
 
@@ -115,7 +116,7 @@ gpu::GpuShadowView convert(const ShadowView& view, const ShadowAtlas& atlas) {
                     static_cast<float>(rowLength(view.clipFromWorld, 1) * 0.5 * view.heightPx)};
     if (!view.orthographic)
         v.tangentPerNdc = {v.pxFromNdcScale.x / v.pxPerMetre.x, v.pxFromNdcScale.y / v.pxPerMetre.y};
-    if (!setPlane(view.clipFromWorld, view.orthographic, b, v)) v.pxPerMetre = {};
+    if (!setPlane(view.clipFromWorld, view.orthographic, b, atlas.depthStep, v)) v.pxPerMetre = {};
     v.atlasPerTexel = {1.0f / static_cast<float>(atlas.widthPx), 1.0f / static_cast<float>(atlas.heightPx)};
     return v;
 }

@@ -298,6 +298,9 @@ Result checkFrame(const View::State& state, const FrameDesc& frame) {
         if (atlas.view == VK_NULL_HANDLE || atlas.widthPx == 0 || atlas.heightPx == 0) {
             return Result::failure(Status::BadArgument, "A shadow atlas needs an image view and its extent.");
         }
+        if (!(atlas.depthStep >= 0.0f) || atlas.depthStep > 1.0f) {
+            return Result::failure(Status::BadArgument, "ShadowAtlas::depthStep must be from 0 to 1.");
+        }
     }
     if (frame.shadowViews.size() > state.desc.maxShadowViews) {
         return Result::failure(Status::BadArgument, "%u shadow views were given; ViewDesc::maxShadowViews is %u.",

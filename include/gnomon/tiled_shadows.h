@@ -168,6 +168,7 @@ struct HostImage {
 struct ShadowAtlas {
     VkImageView view = VK_NULL_HANDLE;  ///< 2D array view of the depth aspect of a D32 or D16 image
     std::uint32_t widthPx = 0, heightPx = 0, layers = 1;
+    float depthStep = 0.0f;  ///< between neighbouring values: 0 for D32, 1.6e-5 for D16; the bias grows by it
 };
 
 /// One frame. Images are read by compute shaders (stage COMPUTE_SHADER, access SHADER_SAMPLED_READ); the host makes

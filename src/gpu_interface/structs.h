@@ -71,7 +71,7 @@ struct GpuShadowView {
     // its device depth per texel m.xy * (planeX.w, planeY.w) / (k * linear depth, orthographic: k).
     vec4 planeX;
     vec4 planeY;
-    vec4 planeZ;         // w unused
+    vec4 planeZ;         // w: step of the atlas' depth, beyond that of floats
     vec2 tangentPerNdc;  // lateral over linear depth; orthographic: 0
     vec2 reserved2;
 };

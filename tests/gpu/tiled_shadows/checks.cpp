@@ -38,7 +38,7 @@ ShadowInput shadowInputOf(const FrameInput& input, const FrameResult& result) {
                                                                 : BiasMode::Unbiased;
     out.facedAwayIsDark = setup.facedAwayIsDark;
     out.subsurfaceBiasMetres = input.subsurfaceBiasMetres;
-    out.views = makeShadowViewModels(input.shadows->views);
+    out.views = makeShadowViewModels(input.shadows->views, input.shadows->atlases);
     out.atlases = input.shadows->atlases;
     return out;
 }

@@ -193,6 +193,8 @@ TEST_P(MisuseTest, BeginFrame) {
         {"atlas", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a[0].view = VK_NULL_HANDLE; }); }},
         {"atlas", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a[1].widthPx = 0; }); }},
         {"atlas", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a.resize(1); }); }},
+        {"depthStep", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a[1].depthStep = -1.0f; }); }},
+        {"depthStep", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a[1].depthStep = kNan; }); }},
         {"subsurface", [](FrameDesc& f) { f.subsurfaceBiasMetres = -1; }},
         {"subsurface", [](FrameDesc& f) { f.subsurfaceBiasMetres = kNan; }},
         {"depthStep", [](FrameDesc& f) { f.depthStep = -1e-6f; }},

@@ -144,7 +144,8 @@ void Rig::makeImages(const FrameInput& input) {
     for (const reference::AtlasCopy& atlas : shadows_->atlases) {
         atlases_.push_back(
             makeImage(device, "atlas", VK_FORMAT_D32_SFLOAT, atlas.widthPx, atlas.heightPx, atlas.layers, true));
-        atlasDescs_.push_back({atlases_.back().view(), atlas.widthPx, atlas.heightPx, atlas.layers});
+        atlasDescs_.push_back({atlases_.back().view(), atlas.widthPx, atlas.heightPx, atlas.layers,
+                               static_cast<float>(atlas.depthStep)});
     }
 }
 

@@ -139,6 +139,35 @@ TEST_P(ShadowsTest, CoarseDepthImages) {
     EXPECT_LT(d16, coarse);
 }
 
+// Shadowmaps of 16 bits: without their step in the bias, faces shadow themselves.
+TEST_P(ShadowsTest, CoarseShadowAtlases) {
+    RoomSetup setup{.seed = 17, .widthPx = 48, .heightPx = 40};
+    setup.lights.castingShare = 1.0;
+    setup.lights.suns = 2;
+    setup.shadows.reversed = false;
+    setup.shadows.infiniteFar = false;
+    setup.shadows.nearMetres = 0.02;
+    FrameInput input = makeRoomFrame(setup);
+    constexpr double kStep = 1.0 / 65535.0;
+    auto lit = [&](double step) {
+        auto coarse = std::make_shared<reference::TestShadows>(*input.shadows);
+        for (reference::AtlasCopy& atlas : coarse->atlases) {
+            atlas.depthStep = step;
+            for (float& depth : atlas.depth)
+                depth = static_cast<float>(std::floor(static_cast<double>(depth) / kStep) * kStep);
+        }
+        FrameInput stepped = input;
+        stepped.shadows = coarse;
+        Rig rig(device(), {.filter = Filter::Hard}, viewDescFor(input));
+        if (!rig.ok()) return std::size_t{0};
+        const Checked checked = checkFrame(stepped, rig.run(stepped));
+        EXPECT_LT(checked.shadows.ambiguousShare(), 0.02);
+        return checked.shadows.allLit;
+    };
+    const std::size_t without = lit(0), with = lit(kStep);
+    EXPECT_LT(without, with);
+}
+
 // Any camera, any mixture of depths, any size of rectangle. GNOMON_FULL=1 looks at many more.
 TEST_P(ShadowsTest, RandomRooms) {
     const std::uint64_t seeds = fullRun() ? 200 : 3;

@@ -35,6 +35,47 @@ TEST(ShadowViews, LibraryAgrees) {
     }
 }
 
+// The coefficients of planes, by points of a plane that are projected.
+TEST(ShadowViews, PlanesSlopeAsTheirPointsDo) {
+    const Converted converted({.viewSizePx = 64, .mixDepthKinds = true, .infiniteFar = false});
+    const std::vector<ShadowViewModel> models = makeShadowViewModels(converted.shadows.views);
+    Random random(3);
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < models.size(); ++i) {
+        const ShadowViewModel& model = models[i];
+        const gpu::GpuShadowView& view = converted.gpuViews[i];
+        const Mat4 worldFromClip = inverse(model.clipFromWorld);
+        const double z = random.uniform(1.0, 3.0), w = model.orthographic ? 1.0 : z;
+        const double device =
+            model.orthographic ? model.depth.a + model.depth.b * z : model.depth.a + model.depth.b / z;
+        const double x = random.uniform(-0.8, 0.8), y = random.uniform(-0.8, 0.8);
+        const Vec4 h = worldFromClip * Vec4{x * w, y * w, device * w, w};
+        const Vec3 p = {h.x / h.w, h.y / h.w, h.z / h.w};
+        const Vec3 n = normalize(Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+        const auto coefficient = [&](const gpu::vec4& c) { return n.x * c.x + n.y * c.y + n.z * c.z; };
+        const double mx = coefficient(view.planeX), my = coefficient(view.planeY), mz = coefficient(view.planeZ);
+        const double k = model.orthographic ? mz : mx * x + my * y + mz;
+        if (std::abs(k) < 0.2) continue;
+        ++compared;
+        const double inverseK = 1.0 / (model.orthographic ? k : k * z);
+        const double slopeX = mx * view.planeX.w * inverseK, slopeY = my * view.planeY.w * inverseK;
+        const auto deviceAt = [&](Vec3 q, double& px, double& py) {
+            const ShadowPosition at = project(model, q, 0.0);
+            px = at.xPx, py = at.yPx;
+            return model.orthographic ? model.depth.a + model.depth.b * at.linearDepth
+                                      : model.depth.a + model.depth.b / at.linearDepth;
+        };
+        const Vec3 along = normalize(cross(n, std::abs(n.y) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}));
+        for (const Vec3 aside : {along, cross(n, along)}) {
+            double px0 = 0, py0 = 0, px1 = 0, py1 = 0;
+            const double before = deviceAt(p, px0, py0), after = deviceAt(p + aside * 0.01, px1, py1);
+            const double expected = slopeX * (px1 - px0) + slopeY * (py1 - py0);
+            EXPECT_NEAR(after - before, expected, 1e-4 * std::abs(after - before) + 1e-9) << "view " << i;
+        }
+    }
+    EXPECT_GT(compared, models.size() / 2);
+}
+
 TEST(ShadowViews, DifferencesAreFound) {
     const Converted honest({.viewSizePx = 9});
     const auto errorsAfter = [&](auto change) {

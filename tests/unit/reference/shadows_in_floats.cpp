@@ -71,8 +71,8 @@ Plane planeIn(const View& v, F3 p, F3 n, float bias, float offPlane) {
     const float perNdc = parallel ? -v.b / k : v.b / (plane.z * k);
     plane.slope = {perNdc * m.x / v.scale.x, perNdc * m.y / v.scale.y};
     const float depth = depthOf(plane.z - (bias + toward * offPlane * length(across) / std::abs(k)));
-    const float slack =
-        1e-6f * (std::abs(v.a) + std::abs(depth - v.a)) + (std::abs(plane.slope.x) + std::abs(plane.slope.y)) * 0.0625f;
+    const float slack = 1e-6f * (std::abs(v.a) + std::abs(depth - v.a)) + float(v.model.depthStep) +
+                        (std::abs(plane.slope.x) + std::abs(plane.slope.y)) * 0.0625f;
     plane.depth = v.model.reversed ? depth + toward * slack : depth - toward * slack;
     return plane;
 }

@@ -135,8 +135,10 @@ void addSettings(CLI::App& command, Settings& s) {
             "with factors 4096 and 2); hardware-no-normals (and faces that look away ask the map too); none")
         ->check(CLI::IsMember(biasNames()))
         ->capture_default_str();
-    command.add_option("--hardware-bias", s.hardwareBias,
-                       "CONSTANT,SLOPE[,CLAMP] to draw shadowmaps with, in place of what --bias has");
+    command
+        .add_option("--hardware-bias", s.hardwareBias,
+                    "CONSTANT,SLOPE[,CLAMP] to draw shadowmaps with, in place of what --bias has")
+        ->check([](const std::string& text) { return text.empty() ? "'' is no hardware bias" : std::string(); });
     command.add_option("--bias-metres", s.biasMetres, "Oriented bias of lights that state none")
         ->check(numberWithin(0.0, 1000.0))
         ->capture_default_str();

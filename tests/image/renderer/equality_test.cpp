@@ -66,6 +66,19 @@ TEST_P(DeferredIsInline, OtherFilters) {
     worst.report(device(), "deferred against inline, other filters");
 }
 
+// Derived from the depth of neighbours, in each pipeline anew: with columns a pixel wide, and without perspective.
+TEST_P(DeferredIsInline, FaceNormalsFromDepth) {
+    Worst worst;
+    RendererDesc desc = withFilter(kHard);
+    desc.readFaceNormals = false;
+    const View3d columns = builtin("columns");
+    expectDeferredIsInline(device(), "columns, normals from depth", columns, desc, worst, true);
+    if (thorough())
+        expectDeferredIsInline(device(), "orthographic columns, normals from depth", orthographic(columns, 8.0f), desc,
+                               worst, true);
+    worst.report(device(), "deferred against inline, normals from depth");
+}
+
 // Slots of 4 bits against themselves: evaluated shadows are rounded as stored ones are.
 TEST_P(DeferredIsInline, SlotsOfFourBits) {
     Worst worst;

@@ -77,6 +77,28 @@ TEST_P(Verify, AcneAndLeakStayWithinTheirLimits) {
     }
 }
 
+// Where faces are wider than a few pixels, normals from depth do as well, with perspective and without.
+TEST_P(Verify, FaceNormalsFromDepthOnWideFaces) {
+    const View3d boxes = builtin("boxes");
+    const std::pair<View3d, DeviceDepth> cases[] = {{boxes, DeviceDepth::ReversedZ},
+                                                    {boxes, DeviceDepth::StandardZ},
+                                                    {orthographic(boxes, 1.5f), DeviceDepth::ReversedZ},
+                                                    {orthographic(boxes, 1.5f), DeviceDepth::StandardZ}};
+    for (const auto& [view, depth] : cases) {
+        RendererDesc desc = smallDesc(160, 90);
+        desc.filter = Filter::Hard;
+        desc.readFaceNormals = false;
+        desc.deviceDepth = depth;
+        const Figures f = verified(device(), view, desc).figures;
+        std::printf("[ figure   ] %s: %s, normals from depth: acne %.4f %%, leak %.4f %%\n",
+                    device().info().name.c_str(), view.name.c_str(), 100.0 * f.share(f.acne), 100.0 * f.share(f.leak));
+        EXPECT_GT(f.pairs, 5000u);
+        EXPECT_GT(f.dark, 100u);
+        EXPECT_LE(f.share(f.acne + f.leak), kMostAcneAndLeak);
+        if (!thorough()) break;
+    }
+}
+
 // The same comparison tells a result that is wrong: every shadow lost, and every light.
 TEST_P(Verify, LostShadowsAndLightsAreTold) {
     RendererDesc desc = smallDesc(160, 90);

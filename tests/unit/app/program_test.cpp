@@ -131,6 +131,21 @@ TEST_F(Program, WrongUsageIsRefused) {
         expectRefused(arguments, 2);
 }
 
+TEST_F(Program, WrongBiasesAreRefused) {
+    for (const char* bias : {"nonsense", "''", "Oriented", "oriented,none"})
+        expectRefused(std::string("render --bias ") + bias, 2);
+    for (const char* factors :
+         {"''", "1", "1,", ",1", "1,x", "1,2,", "1,2,3,4", "1:2", "' 1,2'", "nan,1", "1,inf", "1e10,1"})
+        expectRefused(std::string("render --hardware-bias ") + factors, 2);
+    for (const char* option : {"--bias-metres", "--subsurface-bias"})
+        for (const char* metres : {"''", "-0.001", "nan", "1001", "2mm"})
+            expectRefused(std::string("verify ") + option + " " + metres, 2);
+    for (const char* source : {"guessed", "''"}) expectRefused(std::string("render --face-normals ") + source, 2);
+    for (const char* variant : {"deferred@nonsense", "deferred@", "@none", "deferred@none@none", "deferred,inline@",
+                                "inline@none,inline@none"})
+        expectRefused(std::string("bench --variants ") + variant, 2);
+}
+
 TEST_F(Program, SizesOfNothingAndAbsurdSizesAreRefused) {
     for (const char* size : {"0x0", "0x64", "64x0", "16385x64", "64x16385", "4294967297x64", "-64x64", "64", "64x",
                              "x64", "64x64x64", "axb", "1e3x64", "' 64x64'", "''"})

@@ -81,6 +81,14 @@ inline std::string triangleGlb() {
     return glb(triangleJson(R"({"byteLength":44})"), triangleBytes());
 }
 
+// One point light named 'lamp' and nothing else; `more` goes into the light.
+inline std::string lightGltf(const std::string& more) {
+    return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],)"
+           R"("nodes":[{"extensions":{"KHR_lights_punctual":{"light":0}}}],)"
+           R"("extensions":{"KHR_lights_punctual":{"lights":[{"name":"lamp","type":"point")" +
+           more + "}]}}}";
+}
+
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
     EXPECT_NE(at, std::string::npos) << "nothing to replace: " << from;

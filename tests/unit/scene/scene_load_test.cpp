@@ -123,6 +123,18 @@ TEST(SceneLoad, Lights) {
     EXPECT_EQ(scene.notes.size(), 1u);  // the dark light
 }
 
+TEST(SceneLoad, LightsMayStateTheirBias) {
+    const auto biasOf = [](const std::string& extras) { return loaded(lightGltf(extras)).lights.at(0).biasMetres; };
+    EXPECT_FLOAT_EQ(biasOf(R"(,"extras":{"shadowBiasMetres":0.005})"), 0.005f);
+    EXPECT_EQ(biasOf(R"(,"extras":{"shadowBiasMetres":0})"), 0.0f);
+    const float renderersOwn = SceneLight().biasMetres;
+    EXPECT_LT(renderersOwn, 0.0f);
+    EXPECT_EQ(biasOf(""), renderersOwn);
+    EXPECT_EQ(biasOf(R"(,"extras":{"bias":1})"), renderersOwn);
+    EXPECT_EQ(biasOf(R"(,"extras":{"shadowBiasMetres":null})"), renderersOwn);
+    EXPECT_EQ(biasOf(R"(,"extras":7)"), renderersOwn);
+}
+
 TEST(SceneLoad, MaterialTexturesAndTransform) {
     const Scene scene = loaded(triangleGltf(
         std::string(",") + kImage +

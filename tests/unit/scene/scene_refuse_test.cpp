@@ -144,6 +144,11 @@ TEST(SceneRefuse, Nodes) {
     EXPECT_TRUE(loadText(triangleGltf("", "", chain + R"({"mesh":0}])"), scene).ok());
 }
 
+TEST(SceneRefuse, LightsWithABiasThatIsNoLength) {
+    for (const char* value : {"-0.001", "-1e-9", "\"2 mm\"", "true", "[0.002]", "1e39"})
+        expectRefused(lightGltf(std::string(R"(,"extras":{"shadowBiasMetres":)") + value + "}"), "light 0 'lamp'");
+}
+
 TEST(SceneRefuse, Extensions) {
     expectRefused(triangleGltf(R"(,"extensionsRequired":["EXT_meshopt_compression"])"), "EXT_meshopt_compression");
     expectNoted(triangleGltf(R"(,"extensionsUsed":["VENDOR_whatever"])"), "VENDOR_whatever");

@@ -44,7 +44,7 @@ float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius) 
         precise vec2 corner = fma(offset, vec2(away), s.corner);
         if (!inside && leavesFace(s, k, corner)) {
             float plane, stored;
-            otherFace(light, s, k, corner + 0.5, plane, stored);
+            otherFace(light, s, i, corner + 0.5, plane, stored);
             sum += stored > plane ? 0.0 : 1.0;
         } else {
             sum += filterTap(s, clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));

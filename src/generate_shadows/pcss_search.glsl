@@ -93,7 +93,7 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visi
             vec4 plane, stored;
             if (leavesFace(s, k, corner)) {
                 float planeThere, storedThere;
-                otherFace(light, s, k, corner + 0.5, planeThere, storedThere);
+                otherFace(light, s, i, corner + 0.5, planeThere, storedThere);
                 plane = vec4(planeThere);
                 stored = vec4(storedThere);
             } else {

@@ -12,9 +12,10 @@ vec3 viewRow(uint view, uint row) {
 
 // A tap beyond the border of a point light's face looks at the face that its direction meets. The
 // receiver's plane and what is stored there, compared in that face and told as depths of the own one. Views are read
-// field by field: two whole ones at once would cost every caller nine registers (docs/register-pressure.md).
-void otherFace(GpuLight light, ShadowPoint s, PcssKernel k, vec2 px, out float plane, out float stored) {
-    uint own = s.view;
+// field by field: two whole ones at once would cost every caller nine registers (docs/register-pressure.md). `tap` is
+// the number of the tap, and adds nothing: what is read here would else be kept through the caller's whole loop.
+void otherFace(GpuLight light, ShadowPoint s, uint tap, vec2 px, out float plane, out float stored) {
+    uint own = s.view + (tap >> 31u);
     precise vec2 ndc = (px - shadowViews[own].pxFromNdcOffset) / shadowViews[own].pxFromNdcScale;
     vec3 x = viewRow(own, 0u);
     vec3 y = viewRow(own, 1u);

@@ -11,7 +11,7 @@ namespace {
 
 GNOMON_IMAGE_TEST_SUITE(Verify);
 
-constexpr double kMostAcneAndLeak = 0.001, kMostContactLeak = 0.01;
+constexpr double kMostAcneAndLeak = 0.001, kMostContactLeak = 0.01, kMostPenumbraError = 0.05;
 
 struct Verified {
     Figures figures, subsurface;
@@ -110,12 +110,13 @@ TEST_P(Verify, LostShadowsAndLightsAreTold) {
     EXPECT_GT(figuresOf(v.truth, v.visibility, false).opaque.acne, 5000u);
 }
 
-// In place of the ball of sphere-on-plane a plate, 6 mm above the plane, that shows its back to the camera: through it
+// In place of the ball of sphere-on-plane a square plate above the plane that shows its back to the camera: through it
 // the plane is seen, which it darkens.
-View3d hiddenPlate() {
+View3d hiddenPlate(float heightMetres, float halfMetres) {
     View3d view = builtin("sphere-on-plane");
+    const float y = heightMetres, h = halfMetres;
     Primitive plate;
-    plate.positions = {{-1, 0.006f, -1}, {1, 0.006f, -1}, {1, 0.006f, 1}, {-1, 0.006f, 1}};
+    plate.positions = {{-h, y, -h}, {h, y, -h}, {h, y, h}, {-h, y, h}};
     plate.indices = {0, 1, 2, 0, 2, 3};
     for (const glm::vec3& p : plate.positions) plate.bounds.add(p);
     for (Instance& instance : view.scene.instances) {
@@ -128,7 +129,7 @@ View3d hiddenPlate() {
 
 // A depth bias that is 1 cm too large.
 TEST_P(Verify, ABiasThatIsACentimetreTooLargeIsTold) {
-    const View3d view = hiddenPlate();
+    const View3d view = hiddenPlate(0.006f, 1.0f);
     RendererDesc desc = smallDesc(160, 90);
     desc.filter = Filter::Hard;
     const Figures good = verified(device(), view, desc).figures;
@@ -141,6 +142,24 @@ TEST_P(Verify, ABiasThatIsACentimetreTooLargeIsTold) {
     EXPECT_GT(planted.share(planted.contactLeak), kMostContactLeak);
     std::printf("[ figure   ] %s: contact leak %.3f %%, with 1 cm more bias %.3f %%\n", device().info().name.c_str(),
                 100.0 * good.share(good.contactLeak), 100.0 * planted.share(planted.contactLeak));
+}
+
+// One plane blocks another: all that PCSS takes for granted. What is left is the noise of its taps.
+TEST_P(Verify, PenumbraOfAPlateOverAPlane) {
+    if (device().info().name.find("SwiftShader") != std::string::npos)
+        GTEST_SKIP() << "two more filters take it 20 s to compile";
+    View3d view = hiddenPlate(2.0f, 0.5f);
+    ASSERT_TRUE(parseCamera("2,2,4:0,0,0:35", view.scene, view.camera).ok());
+    for (const PcssTaps taps : {kPcssMedium, kPcssHigh}) {
+        RendererDesc desc = smallDesc(160, 90);
+        desc.pcss = taps;
+        const Figures f = verified(device(), view, desc).figures;
+        std::printf("[ figure   ] %s: %u and %u taps: rmse %.4f of %llu pairs in penumbra\n",
+                    device().info().name.c_str(), taps.searchTaps, taps.filterTaps, f.penumbraRmse(),
+                    static_cast<unsigned long long>(f.penumbraPairs));
+        EXPECT_GT(f.penumbraPairs, 200u);
+        EXPECT_LE(f.penumbraRmse(), kMostPenumbraError);
+    }
 }
 
 // A glowing ball, lit from the side, by both rules: drawn as it is traced.

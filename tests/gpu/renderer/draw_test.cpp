@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "gpu/renderer/device_test.h"
 #include "renderer/gbuffer/gbuffer.h"
 #include "renderer/gpu/timer.h"
 #include "renderer/shadow_atlas/shadow_atlas.h"
@@ -97,27 +98,7 @@ double viewDepthOf(const TestCamera& c, double device) {
     return reversed ? n / device : n / (1.0 - device);
 }
 
-class DrawTest : public ::testing::Test {
-protected:
-    static VulkanInstance& instance() {
-        static VulkanInstance shared({.validation = true});
-        return shared;
-    }
-    static std::vector<DeviceInfo> suitable() {
-        std::vector<DeviceInfo> out;
-        for (const DeviceInfo& d : instance().listDevices()) {
-            if (d.suitable)
-                out.push_back(d);
-            else
-                std::printf("skipped: %s\n", d.missing.c_str());
-        }
-        return out;
-    }
-    static void expectNoMessages() {
-        EXPECT_EQ(instance().messages().count(), 0u);
-        instance().messages().clear();
-    }
-};
+class DrawTest : public DeviceTest {};
 
 void checkGBuffer(const Device& device, bool orthographic, DeviceDepth depth, const glm::vec3& place) {
     const Scene scene = testScene(place);

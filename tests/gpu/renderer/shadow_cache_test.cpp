@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <set>
 
+#include "gpu/renderer/device_test.h"
 #include "renderer/renderer.h"
 #include "renderer/shadow_atlas/shadow_atlas.h"
 
@@ -77,27 +78,7 @@ Scene makeScene() {
     return scene;
 }
 
-class ShadowCacheTest : public ::testing::Test {
-protected:
-    static VulkanInstance& instance() {
-        static VulkanInstance shared({.validation = true});
-        return shared;
-    }
-    static std::vector<DeviceInfo> suitable() {
-        std::vector<DeviceInfo> out;
-        for (const DeviceInfo& d : instance().listDevices()) {
-            if (d.suitable)
-                out.push_back(d);
-            else
-                std::printf("skipped: %s\n", d.missing.c_str());
-        }
-        return out;
-    }
-    static void expectNoMessages() {
-        EXPECT_EQ(instance().messages().count(), 0u);
-        instance().messages().clear();
-    }
-};
+class ShadowCacheTest : public DeviceTest {};
 
 // A scene and its atlas, drawn with one plan for ever.
 struct Rig {

@@ -59,10 +59,12 @@ TEST_P(Variants, OrthographicCamera) {
 
 TEST_P(Variants, RaggedExtents) {
     Worst worst;
-    const std::pair<std::uint32_t, std::uint32_t> extents[] = {{211, 117}, {1, 1},   {8, 8},  {9, 7},
-                                                               {64, 64},   {65, 63}, {1, 97}, {131, 2}};
+    // The first three are what software devices have time for: each extent is a renderer, which they compile anew.
+    const std::pair<std::uint32_t, std::uint32_t> extents[] = {{211, 117}, {1, 1},  {131, 2}, {9, 7},
+                                                               {65, 63},   {1, 97}, {8, 8},   {64, 64}};
+    std::size_t left = fullRun() ? std::size(extents) : thorough() ? 6 : 3;
     for (const auto& [width, height] : extents) {
-        if (!fullRun() && width % 2 == 0) continue;
+        if (left-- == 0) break;
         const std::string name = "columns+64 " + std::to_string(width) + "x" + std::to_string(height);
         expectDeferredIsInline(device(), name, columns64(), smallDesc(width, height), worst, width * height > 4000);
     }

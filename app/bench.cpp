@@ -135,6 +135,9 @@ void benchWithin(const renderer::VulkanInstance& instance, const BenchOptions& o
 int bench(const BenchOptions& options) {
     rendererDescOf(options.settings);  // refuses wrong settings before anything is started
     std::set<std::string> names;
+    for (const std::string& name : options.variants)
+        if (!options.settings.hardwareBias.empty() && name.find('@') != std::string::npos)
+            throw UsageError(fmt::format("--hardware-bias does not go with '{}', which has a bias of its own.", name));
     for (const std::string& name : options.variants) {
         wayOf(name);
         if (!names.insert(name).second) throw UsageError(fmt::format("--variants names '{}' twice.", name));

@@ -54,15 +54,17 @@ renderer::HardwareBias parseHardwareBias(const std::string& text) {
     bool good = !text.empty();
     while (good && count < 3) {
         const auto [next, error] = std::from_chars(at, end, values[count]);
-        good = error == std::errc() && std::abs(values[count]) <= 1e9f;
+        good = error == std::errc() && values[count] >= 0.0f && values[count] <= 1e9f;
         ++count;
         at = next;
         if (!good || at == end) break;
         good = *at++ == ',' && at != end;
     }
     if (!good || at != end || count < 2)
-        throw UsageError(fmt::format(
-            "'{}' is no hardware bias: give CONSTANT,SLOPE or CONSTANT,SLOPE,CLAMP as in 4096,2 or 0,1,0.01.", text));
+        throw UsageError(
+            fmt::format("'{}' is no hardware bias: give CONSTANT,SLOPE or CONSTANT,SLOPE,CLAMP, each at least 0, as in "
+                        "4096,2 or 0,1,0.01.",
+                        text));
     return {values[0], values[1], values[2]};
 }
 
@@ -91,42 +93,9 @@ CLI::Validator numberWithin(double low, double high) {
             range};
 }
 
-void addSettings(CLI::App& command, Settings& s) {
-    command.add_option("scene", s.scene, "A built-in scene or a .gltf or .glb file")->capture_default_str();
-    command.add_option("--size", s.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
-    command.add_option("--camera", s.camera, "A camera's name, #index, or eye:target[:degrees] as in 0,3,8:0,1,0:60")
-        ->capture_default_str();
-    command.add_option("--time", s.time, "Seconds into the scene's animations, of the first frame")
-        ->check(numberWithin(-1e9, 1e9))
-        ->capture_default_str();
-    command.add_option("--animation", s.animation, "The animation to play: its name, #index, default or none")
-        ->capture_default_str();
-    command.add_option("--lights", s.lights, "Scatter so many shadowed lights over the scene")
-        ->check(CLI::Range(0u, kMostLights));
-    command
-        .add_option(
-            "--light-density", s.lightDensity,
-            "Shadowed lights per tile, in the mean, that --lights shall give in this picture; they take the place "
-            "of the scene's own point and spot lights")
-        ->check(numberWithin(0.1, 64.0))
-        ->needs("--lights");
-    command.add_option("--seed", s.seed, "Of scattered lights")
-        ->check(CLI::Range(std::int64_t{0}, std::int64_t{0xFFFFFFFF}))
-        ->capture_default_str();
-    command.add_option("--filter", s.filter, "Shadow filter")
-        ->check(CLI::IsMember({"hard", "pcf", "pcss"}))
-        ->capture_default_str();
-    command.add_option("--pcf-radius", s.pcfRadius, "Texels")->check(CLI::Range(1, 3))->capture_default_str();
-    command
-        .add_option("--pcss-taps", s.taps,
-                    "low, medium, high, or SEARCH,FILTER: taps of the search and of the filter, as in 16,24")
-        ->capture_default_str();
-    command.add_flag("--pattern-per-frame", s.patternPerFrame, "Turn the sample pattern of pcss from frame to frame");
-    command.add_flag("--no-shadow-bounds", s.noShadowBounds,
-                     "pcss searches everywhere, also where the bounds of the shadowmaps tell the result");
-    command.add_option("--visibility-bits", s.visibilityBits, "Bits of a pixel's visibility in a slot")
-        ->check(CLI::IsMember({4, 8}))
-        ->capture_default_str();
+namespace {
+
+void addBiasSettings(CLI::App& command, Settings& s) {
     command
         .add_option(
             "--bias", s.bias,
@@ -147,10 +116,52 @@ void addSettings(CLI::App& command, Settings& s) {
                      "--subsurface-bias");
     command.add_option("--subsurface-bias", s.subsurfaceBiasMetres, "Metres, with --subsurface-fronts")
         ->check(numberWithin(0.0, 1000.0))
+        ->needs("--subsurface-fronts")
         ->capture_default_str();
     command.add_option("--face-normals", s.faceNormals, "From the G-buffer, or derived from its depth")
         ->check(CLI::IsMember({"stored", "derived"}))
         ->capture_default_str();
+}
+
+}  // namespace
+
+void addSettings(CLI::App& command, Settings& s) {
+    command.add_option("scene", s.scene, "A built-in scene or a .gltf or .glb file")->capture_default_str();
+    command.add_option("--size", s.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+    command.add_option("--camera", s.camera, "A camera's name, #index, or eye:target[:degrees] as in 0,3,8:0,1,0:60")
+        ->capture_default_str();
+    command.add_option("--time", s.time, "Seconds into the scene's animations, of the first frame")
+        ->check(numberWithin(-1e9, 1e9))
+        ->capture_default_str();
+    command.add_option("--animation", s.animation, "The animation to play: its name, #index, default or none")
+        ->capture_default_str();
+    command.add_option("--lights", s.lights, "Scatter so many shadowed lights over the scene")
+        ->check(CLI::Range(0u, kMostLights));
+    command
+        .add_option(
+            "--light-density", s.lightDensity,
+            "Shadowed lights per tile, in the mean, that --lights shall give in this picture; they take the place "
+            "of the scene's own point and spot lights")
+        ->check(numberWithin(0.1, 64.0))
+        ->needs("--lights");
+    command.add_option("--seed", s.seed, "Of scattered lights, and of what verify chooses by chance")
+        ->check(CLI::Range(std::int64_t{0}, std::int64_t{0xFFFFFFFF}))
+        ->capture_default_str();
+    command.add_option("--filter", s.filter, "Shadow filter")
+        ->check(CLI::IsMember({"hard", "pcf", "pcss"}))
+        ->capture_default_str();
+    command.add_option("--pcf-radius", s.pcfRadius, "Texels")->check(CLI::Range(1, 3))->capture_default_str();
+    command
+        .add_option("--pcss-taps", s.taps,
+                    "low, medium, high, or SEARCH,FILTER: taps of the search and of the filter, as in 16,24")
+        ->capture_default_str();
+    command.add_flag("--pattern-per-frame", s.patternPerFrame, "Turn the sample pattern of pcss from frame to frame");
+    command.add_flag("--no-shadow-bounds", s.noShadowBounds,
+                     "pcss searches everywhere, also where the bounds of the shadowmaps tell the result");
+    command.add_option("--visibility-bits", s.visibilityBits, "Bits of a pixel's visibility in a slot")
+        ->check(CLI::IsMember({4, 8}))
+        ->capture_default_str();
+    addBiasSettings(command, s);
     command.add_option("--device", s.device, "Index or part of the name of a Vulkan device (see: gnomon devices)");
     command.add_flag("--validate", s.validate, "Run under the validation layers; any message is a failure");
     command.add_flag_callback("--quiet", silenceProgress, "No progress on stderr");

@@ -1,5 +1,5 @@
 #pragma once
-// The options that `render` and `bench` share: which scene, seen how, drawn by what.
+// The options that `render`, `verify` and `bench` share: which scene, seen how, drawn by what.
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
@@ -53,8 +53,8 @@ inline double frameTime(double firstSeconds, std::uint64_t frame, double framesP
     return framesPerSecond > 0.0 ? firstSeconds + static_cast<double>(frame) / framesPerSecond : firstSeconds;
 }
 
-/// Sets how depths are biased, one of biasNames(), each with its own way to draw; throws UsageError otherwise.
 const std::vector<std::string>& biasNames();
+/// Sets how depths are biased, one of biasNames(), each with its own way to draw; throws UsageError otherwise.
 void setBias(const std::string& name, renderer::RendererDesc& desc);
 
 /// Throws UsageError on what no device could do.

@@ -60,6 +60,8 @@ std::vector<std::uint32_t> Verification::wantedLights() const {
         wanted.resize(pose_.lights.size());
         std::iota(wanted.begin(), wanted.end(), 0u);
     }
+    std::ranges::sort(wanted);
+    wanted.erase(std::ranges::unique(wanted).begin(), wanted.end());
     std::erase_if(wanted, [&](std::uint32_t i) { return !pose_.lights[i].casts; });
     return wanted;
 }

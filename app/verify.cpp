@@ -19,6 +19,8 @@ constexpr double kMostConstant = 1e9, kMostSlope = 1e3;
 // What --sweep judges beside the chosen bias.
 std::vector<BiasSetting> sweepOf(const VerifyOptions& options) {
     if (!options.sweep) return {};
+    if (!options.settings.hardwareBias.empty() || options.settings.bias.starts_with("hardware"))
+        throw UsageError("--sweep draws with hardware biases itself: leave --hardware-bias and --bias hardware out.");
     return settingsOfSweep(options.settings.bias,
                            parseSweepNumbers(options.sweepConstants, "constant factors", kMostConstant),
                            parseSweepNumbers(options.sweepSlopes, "slope factors", kMostSlope));
@@ -34,7 +36,14 @@ void verifyWithin(const renderer::VulkanInstance& instance, const VerifyOptions&
     Verification verification(session, options, sweepOf(options));
     sayProgress(fmt::format("Drawn, and made ready to trace, in {:.1f} s.", setUp.seconds()));
     const VerifyResult result = verification.run();
-    if (!options.json.empty()) writeJson(describe(session, result), options.json);
+    if (!options.json.empty()) {
+        Json json = describe(session, result);
+        json["settings"].update({{"rays", options.rays},
+                                 {"subset", options.subset},
+                                 {"edgeSet", options.edgeSet},
+                                 {"lights", options.lights}});
+        writeJson(json, options.json);
+    }
     printVerified(session, result);
     if (!options.maps.empty()) fmt::print("Written: maps of {} lights in {}\n", result.lights.size(), options.maps);
 }
@@ -45,7 +54,8 @@ void prepareFolder(const std::string& folder) {
     std::filesystem::create_directories(folder, error);
     if (!std::filesystem::is_directory(folder))
         throw UsageError(fmt::format("'{}' is no folder and cannot be made one.", folder));
-    renderer::checkWritable(std::filesystem::path(folder) / "light_000.png");
+    for (const char* file : {"light_000.png", "total.png"})
+        renderer::checkWritable(std::filesystem::path(folder) / file);
 }
 
 int verify(const VerifyOptions& options) {
@@ -53,8 +63,8 @@ int verify(const VerifyOptions& options) {
     rendererDescOf(options.settings);  // refuses wrong settings before anything is started
     if (options.settings.unquantised)
         throw UsageError("--unquantised has no meaning here: verify reads what is stored.");
-    checkOutputs({&options.json, 1}, {&options.settings.scene, 1});
     prepareFolder(options.maps);
+    checkOutputs({&options.json, 1}, {&options.settings.scene, 1});
     const renderer::VulkanInstance instance(instanceDescOf(options.settings));
     verifyWithin(instance, options);
     return exitCodeOf(instance, options.settings);
@@ -68,7 +78,7 @@ void addVerifyCommand(CLI::App& app, Work& chosen) {
     addSettings(*command, options->settings);
     command->add_option("--json", options->json, "All figures, a JSON file")->check(fileName());
     command->add_option("--maps", options->maps, "A folder for one picture per light: truth, result, errors")
-        ->check(fileName());
+        ->check([](const std::string& name) { return name.empty() ? "give a folder's name" : std::string(); });
     command->add_option("--light", options->lights, "Only this light of the scene, counted from 0; may be repeated");
     command->add_option("--rays", options->rays, "Soft truth: rays to the source, rounded up to a square number")
         ->check(CLI::Range(256u, 65536u))

@@ -3,6 +3,11 @@
 #include <fmt/format.h>
 
 namespace gnomon::app {
+
+std::string percent(double share) {
+    return fmt::format("{:.4f}", 100.0 * share);
+}
+
 namespace {
 
 using renderer::Figures;
@@ -17,10 +22,6 @@ const char* nameOf(renderer::LightKind kind) {
             return "directional";
     }
     return "";
-}
-
-std::string percent(double share) {
-    return fmt::format("{:.4f}", 100.0 * share);
 }
 
 void printRow(const std::string& name, const Figures& f) {

@@ -30,6 +30,8 @@ struct VerifyResult {
     double seconds = 0.0;
 };
 
+std::string percent(double share);  ///< with four decimals, without the sign
+
 Json describe(const renderer::Figures& figures);
 
 void printVerified(const Session& session, const VerifyResult& result);

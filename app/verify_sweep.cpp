@@ -24,10 +24,6 @@ std::uint64_t wrongOf(const Figures& f, bool contacts) {
     return f.acne + f.leak + (contacts ? f.contactLeak : 0);
 }
 
-std::string percent(double share) {
-    return fmt::format("{:.4f}", 100.0 * share);
-}
-
 void printRow(const SweptSetting& row, const char* mark) {
     const Figures& f = row.figures.opaque;
     fmt::print("{:<24} {:>9} {:>9} {:>11} {:>11} {:>9}  {}\n", nameOf(row.setting), percent(f.share(f.acne)),

@@ -31,13 +31,10 @@ Visibility sampleView(const LightModel& light, std::size_t which, const Pixel& p
     const auto views = std::span(input.views).subspan(light.firstShadowView, light.viewCount());
     const ShadowViewModel& view = views[which];
     double bias = light.biasMetres;
-    if (pixel.subsurface)
-        bias = std::max(bias, input.subsurfaceBiasMetres);
-    else if (!faces)
-        bias = -bias;
+    if (pixel.subsurface) bias = std::max(bias, input.subsurfaceBiasMetres);
     if (input.bias == BiasMode::Unbiased) bias = 0;
     const DepthMode mode = input.bias == BiasMode::Oriented ? DepthMode::Plane : DepthMode::Constant;
-    const ReceiverInView receiver = receiverIn(view, pixel, mode, bias);
+    const ReceiverInView receiver = receiverIn(view, pixel, mode, bias, faces || pixel.subsurface);
     if (receiver.unknown) return kAny;
     Visibility result = receiver.mayBeBehind ? kLit : kNone;
     for (const ReceiverPlane& plane : receiver.planes) {

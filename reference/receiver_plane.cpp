@@ -31,7 +31,8 @@ std::vector<Interval> tilted(Interval k, Interval least) {
 
 }  // namespace
 
-ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, DepthMode mode, double biasMetres) {
+ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, DepthMode mode, double biasMetres,
+                          bool toward) {
     ReceiverInView result;
     const ShadowPosition at = project(view, pixel.position, pixel.positionError);
     if (!view.orthographic) {
@@ -53,9 +54,10 @@ ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, Depth
         plane.ray = squareRoot(1.0 + plane.tangentX * plane.tangentX + plane.tangentY * plane.tangentY);
     }
 
+    const double sign = toward ? 1 : -1;
     if (mode == DepthMode::Constant) {
         plane.slopeX = plane.slopeY = 0.0;
-        plane.depth = biasedDepth(view, plane.linearDepth, rounded(biasMetres));
+        plane.depth = biasedDepth(view, plane.linearDepth, sign * rounded(biasMetres));
         result.planes.push_back(plane);
         return result;
     }
@@ -68,16 +70,15 @@ ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, Depth
     const Interval gamma = dot(normal, across);
     const Interval k = view.orthographic ? gamma : dot({alpha, beta, gamma}, {ndcX, ndcY, 1.0});
     const Interval area = squareRoot(dot(across, across)), least = kLeastCosine * area * plane.ray;
-    const double toward = biasMetres < 0 ? -1 : 1;
     for (const Interval tilt : tilted(k, least)) {
         const Interval offPlane = within(pixel.offPlaneMetres, pixel.offPlaneError) * area / abs(tilt);
-        const Interval depth = biasedDepth(view, plane.linearDepth, rounded(biasMetres) + offPlane * toward);
+        const Interval depth = biasedDepth(view, plane.linearDepth, sign * (rounded(biasMetres) + offPlane));
         const Interval perNdc = view.orthographic ? -(b / tilt) : b / (plane.linearDepth * tilt);
         plane.slopeX = perNdc * alpha / scaleX;
         plane.slopeY = perNdc * beta / scaleY;
         const Interval slack = 1e-6 * (abs(a) + abs(depth - a)) + rounded(view.depthStep) +
                                (abs(plane.slopeX) + abs(plane.slopeY)) * (1.0 / 16);
-        plane.depth = depth + slack * (view.reversed ? toward : -toward);
+        plane.depth = depth + slack * (view.reversed ? sign : -sign);
         result.planes.push_back(plane);
     }
     return result;

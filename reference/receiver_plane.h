@@ -10,9 +10,10 @@
 // What: with clip.xyw = (r0 p, r1 p, a p) up to constants, a face of normal n obeys alpha X w + beta Y w + gamma w =
 // const, where (alpha, beta, gamma) = (n (r1 x a), n (a x r0), n (r0 x r1)). Perspective: 1/w, and with it device
 // depth, is linear in X and Y; orthographic: w is. The slopes per texel follow. Where the view sees the face from the
-// side, the least tilt (kLeastCosine) keeps them finite. Device depth at p starts a bias nearer to the light, which grows
-// by what the pixel may lie off its face, seen along the light's axis; and a slack of a sixteenth of the slopes, a step of
-// the atlas' depth and a few float roundings. Without a plane (DepthMode::Constant) all texels have one depth: that of p, moved, with no slack.
+// side, the least tilt (kLeastCosine) keeps them finite. Device depth at p starts a bias nearer to the light, which
+// grows by what the pixel may lie off its face, seen along the light's axis; and a slack of a sixteenth of the slopes,
+// a step of the atlas' depth and a few float roundings. Without a plane (DepthMode::Constant) all texels have one
+// depth: that of p, moved, with no slack.
 //
 // Limits: all is interval arithmetic, see interval.h. What rounding could turn gives several planes.
 
@@ -42,8 +43,9 @@ struct ReceiverInView {
     bool unknown = false;      ///< anything may come out
     std::vector<ReceiverPlane> planes;
 };
-/// The bias, and with it the slack, is toward the light; away from it where it is below 0.
-ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, DepthMode mode, double biasMetres);
+/// The bias, and with it the slack, is toward the light or away from it.
+ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, DepthMode mode, double biasMetres,
+                          bool toward);
 
 /// Device depth of the plane at an atlas position. `limited`: no more than |slopeX| + |slopeY| farther from the light
 /// than at the pixel itself.

@@ -8,8 +8,8 @@
 
 namespace gnomon::renderer {
 
-/// The frame's origin for a camera: the nearest point of a grid of 1024 m, so the world's own origin while the camera is
-/// within 512 m of it. A float step there is at most 0.06 mm.
+/// The frame's origin for a camera: the nearest point of a grid of 1024 m, so the world's own origin while the camera
+/// is within 512 m of it. A float step there is at most 0.06 mm.
 glm::dvec3 frameOriginOf(const SceneCamera& camera);
 
 /// Matrices relative to `origin`, for an extent in pixels. Clip space is Vulkan's, y down.

@@ -88,8 +88,8 @@ public:
     /// Per pixel the triangle's position among all instances' triangles in the scene's order, kNone at background.
     /// Waits.
     std::vector<std::uint32_t> readTriangleIds();
-    /// Per pixel the visibility of a light of the scene in the last frame, which must have been ShadowMode::Deferred; -1
-    /// where the light does not reach, and everywhere for a light out of view. Waits.
+    /// Per pixel the visibility of a light of the scene in the last frame, which must have been ShadowMode::Deferred;
+    /// -1 where the light does not reach, and everywhere for a light out of view. Waits.
     std::vector<float> readVisibility(std::uint32_t light);
     /// The shadow views of a light in the last frame, empty for one without; positions are relative to frameOrigin().
     std::vector<ShadowView> shadowViews(std::uint32_t light) const;

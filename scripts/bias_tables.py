@@ -130,7 +130,10 @@ def time_table(path):
 
 def put_between(page, mark, table):
     """Replaces what stands between <!-- MARK --> and <!-- end of MARK -->."""
-    text = Path(page).read_text(encoding="utf-8")
+    try:
+        text = Path(page).read_text(encoding="utf-8")
+    except OSError as error:
+        sys.exit(f"{page} cannot be read: {error.strerror}.")
     begin, end = f"<!-- {mark} -->", f"<!-- end of {mark} -->"
     if text.count(begin) != 1 or text.count(end) != 1 or text.index(begin) > text.index(end):
         sys.exit(f"{page} needs one '{begin}' and after it one '{end}'.")

@@ -183,7 +183,7 @@ class Labels:
                 va = "bottom" if s > 0.8 else "top" if s < -0.8 else "center"
                 label = self.axes.annotate(text, point, (away * c, away * s), textcoords="offset points", ha=ha, va=va,
                                            path_effects=HALO, zorder=9, **style)
-                box = label.get_window_extent(self.renderer)
+                box = label.get_window_extent(self.renderer).padded(5)
                 turn = abs((degrees - toward + 180) % 360 - 180)
                 cost = self.cost(box) + away + 0.1 * turn
                 label.remove()
@@ -191,7 +191,9 @@ class Labels:
                     best = (cost, away, (away * c, away * s), ha, va, box)
             if best[0] < 30:
                 break
-        _, away, offset, ha, va, box = best
+        cost, away, offset, ha, va, box = best
+        if not leader and cost >= 30:  # no room so near
+            return
         arrow = {"arrowstyle": "-", "color": style.get("color"), "lw": 0.8, "shrinkA": 0, "shrinkB": 7}
         self.axes.annotate(text, point, offset, textcoords="offset points", ha=ha, va=va, path_effects=HALO, zorder=9,
                            arrowprops=arrow if leader and away > start + 10 else None, **style)
@@ -274,7 +276,8 @@ def draw_small(axes, scale, sweep, contacts, outer):
             kept = [i for i in kept if i != 1]  # no room beside 0
         side.set_ticklabels([text if i in kept else "" for i, text in enumerate(texts)], fontsize=7.5)
     axes.set_title(sweep.scene, fontsize=9, weight="bold", loc="left", color=TEXT, pad=3)
-    axes.text(0.97, 0.05, short_ratio_of(sweep, contacts), fontsize=7.5, ha="right", color=FAINT, transform=axes.transAxes)
+    axes.text(0.97, 0.05, short_ratio_of(sweep, contacts), fontsize=7.5, ha="right", color=FAINT,
+              transform=axes.transAxes)
 
 
 def figure_of(sweeps, contacts):

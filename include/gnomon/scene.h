@@ -83,8 +83,8 @@ struct ShadowView {
     float farMetres = std::numeric_limits<float>::infinity();  ///< infinity allowed for perspective views
     bool orthographic = false;
     DeviceDepth deviceDepth = DeviceDepth::ReversedZ;
-    /// False promises that the View's previous frame had this very rectangle, and that its texels are still the same; its
-    /// shadow bounds are then kept. True after a frame in which the view was not given.
+    /// False promises that the View's previous frame had this very rectangle, and that its texels are still the same;
+    /// its shadow bounds are then kept. True after a frame in which the view was not given.
     bool changed = true;
 };
 

@@ -36,8 +36,8 @@ enum class Filter : std::uint8_t {
     Pcss,  ///< percentage closer soft shadows: a penumbra as wide as the light's source makes it
 };
 
-/// Taps of Filter::Pcss, each a gather of four texels. A pixel outside of penumbrae takes searchTaps at most, one inside
-/// also filterTaps.
+/// Taps of Filter::Pcss, each a gather of four texels. A pixel outside of penumbrae takes searchTaps at most, one
+/// inside also filterTaps.
 struct PcssTaps {
     std::uint32_t searchTaps = 16;  ///< 1 to 64
     std::uint32_t filterTaps = 24;  ///< 1 to 64
@@ -48,12 +48,13 @@ inline constexpr PcssTaps kPcssHigh = {32, 64};
 
 /// What keeps a receiver from shadowing itself.
 enum class DepthBias : std::uint8_t {
-    /// Nearer to the light by Light::biasMetres, in linear depth, and each texel compared with the plane of the receiver's
-    /// face at its own centre. Draw shadowmaps without hardware bias. Needs no tuning.
+    /// Nearer to the light by Light::biasMetres, in linear depth, and each texel compared with the plane of the
+    /// receiver's face at its own centre. Draw shadowmaps without hardware bias. Needs no tuning.
     /// Source: the paper, section 4.2; the plane is ours.
     Oriented,
-    /// The paper's listing 7 as printed: one depth for all texels, nearer to the light where the face looks at it, farther
-    /// where it looks away. Draw shadowmaps with a slope factor of 1, and leave ContextDesc::facedAwayIsDark off.
+    /// The paper's listing 7 as it is meant: one depth for all texels, nearer to the light where the face looks at it,
+    /// farther where it looks away. Draw shadowmaps with a slope factor of 1, and set ContextDesc::facedAwayIsDark to
+    /// false.
     OrientedConstant,
     /// Depths are compared as they are: for hosts that draw their shadowmaps with a hardware bias.
     Unbiased,
@@ -85,8 +86,8 @@ struct ContextDesc {
     std::uint32_t pcfRadius = 1;  ///< texels, 1 to 3
     PcssTaps pcss = kPcssMedium;
     DepthBias depthBias = DepthBias::Oriented;
-    /// A pixel whose face looks away from a light is dark, and its shadowmaps are not asked; subsurface pixels are never.
-    /// Off, with DepthBias::Unbiased: face normals are not read at all.
+    /// A pixel whose face looks away from a light is dark, and its shadowmaps are not asked; subsurface pixels are
+    /// never. Off, with DepthBias::Unbiased: face normals are not read at all.
     bool facedAwayIsDark = true;
     /// 1 to 4. With one, shaders need not choose at every tap.
     std::uint32_t maxShadowAtlases = 4;
@@ -193,9 +194,9 @@ struct FrameDesc {
     /// recordShadowBounds() will be called in this frame. Bounds are kept from frame to frame while ShadowView::changed
     /// is false; set that true once after a recorded frame that was never submitted.
     bool shadowBounds = false;
-    /// Subsurface pixels move toward the light by this, if it is more than the light's own bias. Where subsurface casters
-    /// are drawn without the faces that look at the light, 0 is right; where those are drawn too, the thickness through
-    /// which light shall pass. Source: the paper, section 4.2.
+    /// Subsurface pixels move toward the light by this, if it is more than the light's own bias. Where subsurface
+    /// casters are drawn without the faces that look at the light, 0 is right; where those are drawn too, the thickness
+    /// through which light shall pass. Source: the paper, section 4.2.
     float subsurfaceBiasMetres = 0.02f;
     /// Turns the sample pattern of Filter::Pcss from frame to frame, for hosts that accumulate frames.
     bool patternPerFrame = false;

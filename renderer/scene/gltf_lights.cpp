@@ -61,7 +61,8 @@ void addLight(Document& document, const PlacedNode& node, Scene& scene) {
     if (light.rangeMetres < 0.0f) refuse("{} has the range {}", user, light.rangeMetres);
     if (const tinygltf::Value* bias = member(source.extras, "shadowBiasMetres")) {
         light.biasMetres = bias->IsNumber() ? toFloat(bias->GetNumberAsDouble(), user) : -1.0f;
-        if (light.biasMetres < 0.0f) refuse("{} has a shadowBiasMetres that is no length", user);
+        if (!(light.biasMetres >= 0.0f && light.biasMetres <= 1000.0f))
+            refuse("{} has a shadowBiasMetres that is no length of up to 1000 m", user);
     }
     scene.lights.push_back(std::move(light));
 }

@@ -55,9 +55,9 @@ bool movesTowardLight(GpuLight light, Receiver receiver) {
     return receiver.subsurface || facesLight(receiver.faceNormalWs, toLight);
 }
 
-// What rounding may make of a device depth, in the map and here: 16 steps of a float's terms, a step of an atlas of fewer
-// bits, and the rasterizer's snapping. With reversed Z the first is 20 micrometres at 20 m; with standard Z and a near plane of 5 cm, 16 mm, and
-// no smaller bias could hold there.
+// What rounding may make of a device depth, in the map and here: 16 steps of a float's terms, a step of an atlas of
+// fewer bits, and the rasterizer's snapping. With reversed Z the first is 20 micrometres at 20 m; with standard Z and a
+// near plane of 5 cm, 16 mm, and no smaller bias could hold there.
 float deviceDepthSlack(GpuShadowView view, float depth, vec2 slope) {
     precise float rounding = 1e-6 * (abs(view.depthFromLinearA) + abs(depth - view.depthFromLinearA));
     precise float slack = rounding + view.planeZ.w + kSnapPx * (abs(slope.x) + abs(slope.y));

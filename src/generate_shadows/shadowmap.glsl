@@ -7,8 +7,8 @@
 #include "shading/light_tests.glsl"
 #include "shading/receiver.glsl"
 
-// A receiver in a shadow view, biased and ready to be compared. Device depths here have the sign that makes greater ones
-// nearer to the light.
+// A receiver in a shadow view, biased and ready to be compared. Device depths here have the sign that makes greater
+// ones nearer to the light.
 struct ShadowPoint {
     vec2 corner;   // in the atlas, less half a texel: whole numbers are texel centres; may lie outside the rectangle
     vec2 rectMin;  // the rectangle's first pixel

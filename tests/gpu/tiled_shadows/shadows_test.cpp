@@ -70,6 +70,7 @@ TEST_P(ShadowsTest, EveryDepthBias) {
     setup.lights.suns = 1;
     setup.lights.maxSourceRadius = 0.3;
     FrameInput input = makeRoomFrame(setup);
+    for (std::size_t i = 0; i < input.lights.size(); ++i) input.lights[i].biasMetres = i % 3 == 0 ? 0.0f : 0.002f;
     struct Mode {
         DepthBias bias;
         bool facedAwayIsDark;

@@ -135,15 +135,21 @@ TEST_F(Program, WrongBiasesAreRefused) {
     for (const char* bias : {"nonsense", "''", "Oriented", "oriented,none"})
         expectRefused(std::string("render --bias ") + bias, 2);
     for (const char* factors :
-         {"''", "1", "1,", ",1", "1,x", "1,2,", "1,2,3,4", "1:2", "' 1,2'", "nan,1", "1,inf", "1e10,1"})
+         {"''", "1", "1,", ",1", "1,x", "1,2,", "1,2,3,4", "1:2", "' 1,2'", "nan,1", "1,inf", "1e10,1", "-1,2", "1,-2"})
         expectRefused(std::string("render --hardware-bias ") + factors, 2);
-    for (const char* option : {"--bias-metres", "--subsurface-bias"})
+    for (const char* option : {"--bias-metres", "--subsurface-fronts --subsurface-bias"})
         for (const char* metres : {"''", "-0.001", "nan", "1001", "2mm"})
             expectRefused(std::string("verify ") + option + " " + metres, 2);
     for (const char* source : {"guessed", "''"}) expectRefused(std::string("render --face-normals ") + source, 2);
     for (const char* variant : {"deferred@nonsense", "deferred@", "@none", "deferred@none@none", "deferred,inline@",
                                 "inline@none,inline@none"})
         expectRefused(std::string("bench --variants ") + variant, 2);
+    expectRefused("bench --hardware-bias 1,2 --variants deferred@hardware", 2);
+    expectRefused("bench --hardware-bias 1,2 --preset table2", 2);
+    expectRefused("verify --sweep --hardware-bias 1,2", 2);
+    expectRefused("verify --sweep --bias hardware", 2);
+    expectRefused("verify --subsurface-bias 0.01", 2);
+    expectRefused("verify --maps ''", 2);
 }
 
 TEST_F(Program, SizesOfNothingAndAbsurdSizesAreRefused) {
@@ -269,8 +275,11 @@ TEST_F(Program, VerifiesWhatIsNotThere) {
     expectGood("verify lights-only --filter hard --size 64x36 --quiet --json none.json");
     EXPECT_EQ(readJson("none.json")["total"]["counts"]["pairs"], 0);
     EXPECT_EQ(readJson("none.json")["castingLightsUnseen"], 3);
-    expectGood("verify boxes --filter hard --size 64x36 --quiet --light 1 --json one.json");
-    EXPECT_EQ(readJson("one.json")["lights"].size(), 1u);
+    expectGood("verify boxes --filter hard --size 64x36 --quiet --light 1 --light 1 --maps new --json new/one.json");
+    EXPECT_EQ(readJson("new/one.json")["lights"].size(), 1u) << "named twice, counted once";
+    std::filesystem::remove(folder_ / "new" / "total.png");
+    std::filesystem::create_directory(folder_ / "new" / "total.png");
+    expectRefused("verify boxes --filter hard --size 64x36 --quiet --maps new", 1);
 }
 
 TEST_F(Program, RendersAndDescribesAFrame) {

@@ -51,7 +51,7 @@ struct Plane {
     float z, ray, depth;
 };
 // `offPlane` below 0: no plane, one depth for all texels.
-Plane planeIn(const View& v, F3 p, F3 n, float bias, float offPlane) {
+Plane planeIn(const View& v, F3 p, F3 n, float bias, float toward, float offPlane) {
     Plane plane{};
     const bool parallel = v.model.orthographic;
     const float x = v.clip(0, p), y = v.clip(1, p), w = v.clip(3, p);
@@ -61,8 +61,7 @@ Plane planeIn(const View& v, F3 p, F3 n, float bias, float offPlane) {
     plane.tangent = parallel ? F2{0, 0} : F2{ndc.x * v.scale.x / v.perMetre.x, ndc.y * v.scale.y / v.perMetre.y};
     const auto depthOf = [&](float z) { return parallel ? v.a + v.b * z : v.a + v.b / std::max(z, 1e-4f); };
     plane.ray = std::sqrt(1 + plane.tangent.x * plane.tangent.x + plane.tangent.y * plane.tangent.y);
-    plane.depth = depthOf(plane.z - bias);
-    const float toward = bias < 0 ? -1.0f : 1.0f;
+    plane.depth = depthOf(plane.z - toward * bias);
     if (offPlane < 0) return plane;
     const F3 axis = parallel ? v.r2 * (1.0f / v.b) : v.r3, across = cross(v.r0, v.r1);
     const F3 m = {dot(n, cross(v.r1, axis)), dot(n, cross(axis, v.r0)), dot(n, across)};
@@ -70,7 +69,7 @@ Plane planeIn(const View& v, F3 p, F3 n, float bias, float offPlane) {
     k = raised(k, float(kLeastCosine) * length(across) * plane.ray);
     const float perNdc = parallel ? -v.b / k : v.b / (plane.z * k);
     plane.slope = {perNdc * m.x / v.scale.x, perNdc * m.y / v.scale.y};
-    const float depth = depthOf(plane.z - (bias + toward * offPlane * length(across) / std::abs(k)));
+    const float depth = depthOf(plane.z - toward * (bias + offPlane * length(across) / std::abs(k)));
     const float slack = 1e-6f * (std::abs(v.a) + std::abs(depth - v.a)) + float(v.model.depthStep) +
                         (std::abs(plane.slope.x) + std::abs(plane.slope.y)) * 0.0625f;
     plane.depth = v.model.reversed ? depth + toward * slack : depth - toward * slack;
@@ -219,13 +218,11 @@ float sample(const LightModel& light, std::uint32_t index, const Pixel& pixel, F
     const View v(input.views[light.firstShadowView + index]);
     if (!v.model.orthographic && v.clip(3, p) <= 0) return 1;
     float bias = float(light.biasMetres);
-    if (pixel.subsurface)
-        bias = std::max(bias, float(input.subsurfaceBiasMetres));
-    else if (!faces(light, pixel, p))
-        bias = -bias;
+    if (pixel.subsurface) bias = std::max(bias, float(input.subsurfaceBiasMetres));
+    const float toward = pixel.subsurface || faces(light, pixel, p) ? 1.0f : -1.0f;
     if (input.bias == BiasMode::Unbiased) bias = 0;
     const float offPlane = input.bias == BiasMode::Oriented ? float(pixel.offPlaneMetres) : -1.0f;
-    const Plane plane = planeIn(v, p, f3(pixel.faceNormal), bias, offPlane);
+    const Plane plane = planeIn(v, p, f3(pixel.faceNormal), bias, toward, offPlane);
     return Sampler{input, light, index, v, plane, input.filter == ShadowFilter::Pcss}.filter(pixel);
 }
 

@@ -70,7 +70,9 @@ TEST_P(ShadowsTest, EveryDepthBias) {
     setup.lights.suns = 1;
     setup.lights.maxSourceRadius = 0.3;
     FrameInput input = makeRoomFrame(setup);
-    for (std::size_t i = 0; i < input.lights.size(); ++i) input.lights[i].biasMetres = i % 3 == 0 ? 0.0f : 0.002f;
+    // Every third light without a bias: only the rounding says which way it points.
+    FrameInput nothing = input;
+    for (std::size_t i = 0; i < nothing.lights.size(); i += 3) nothing.lights[i].biasMetres = 0.0f;
     struct Mode {
         DepthBias bias;
         bool facedAwayIsDark;
@@ -94,8 +96,9 @@ TEST_P(ShadowsTest, EveryDepthBias) {
         ASSERT_TRUE(rig.ok());
         const FrameResult result = rig.run(input);
         const Checked checked = checkFrame(input, result);
-        // Without a bias, as one light in three, a surface that lies level in a map ties with itself.
-        EXPECT_LT(checked.shadows.ambiguousShare(), mode.bias == DepthBias::Unbiased ? 0.5 : 0.12);
+        // Without a bias, a surface that lies level in a map ties with itself.
+        EXPECT_LT(checked.shadows.ambiguousShare(), mode.bias == DepthBias::Unbiased ? 0.5 : 0.02);
+        EXPECT_LT(checkFrame(nothing, rig.run(nothing)).shadows.ambiguousShare(), 0.5);
         EXPECT_GT(checked.shadows.slots, 10u);
         std::printf("    bias %d %d: pairs %zu ambiguous %.4f\n", int(mode.bias), int(mode.facedAwayIsDark),
                     checked.shadows.pairs, checked.shadows.ambiguousShare());

@@ -6,7 +6,7 @@
 #include "app/commands.h"
 #include "app/errors.h"
 #include "app/outputs.h"
-#include "renderer/picture/picture.h"
+#include "picture/picture.h"
 
 namespace gnomon::app {
 namespace {

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "app/build_info.h"
-#include "renderer/picture/files.h"
+#include "picture/files.h"
 
 namespace gnomon::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "app/errors.h"
-#include "renderer/picture/picture.h"
+#include "picture/picture.h"
 
 namespace gnomon::app {
 namespace {

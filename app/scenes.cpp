@@ -4,7 +4,7 @@
 
 #include "app/commands.h"
 #include "app/errors.h"
-#include "renderer/builtin/builtin.h"
+#include "scene/builtin/builtin.h"
 
 namespace gnomon::app {
 

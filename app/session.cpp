@@ -8,10 +8,10 @@
 
 #include "app/errors.h"
 #include "app/progress.h"
-#include "renderer/builtin/builtin.h"
-#include "renderer/scene/load_gltf.h"
-#include "renderer/scene/play_animation.h"
-#include "renderer/scene/pose.h"
+#include "scene/builtin/builtin.h"
+#include "scene/load_gltf.h"
+#include "scene/play_animation.h"
+#include "scene/pose.h"
 
 namespace gnomon::app {
 namespace {

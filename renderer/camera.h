@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 
 #include "gnomon/scene.h"
-#include "renderer/scene/scene.h"
+#include "scene/scene.h"
 
 namespace gnomon::renderer {
 

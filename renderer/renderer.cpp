@@ -16,9 +16,9 @@
 #include "renderer/gpu/timer.h"
 #include "renderer/lighting/light_visibility.h"
 #include "renderer/lighting/lighting.h"
-#include "renderer/scene/pose.h"
 #include "renderer/shadow_atlas/plan.h"
 #include "renderer/shadow_atlas/shadow_atlas.h"
+#include "scene/pose.h"
 
 namespace gnomon::renderer {
 namespace {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "gnomon/gnomon.h"
+#include "picture/picture.h"
 #include "renderer/gpu/device.h"
-#include "renderer/picture/picture.h"
-#include "renderer/scene/scene.h"
 #include "renderer/shadow_atlas/drawing.h"
+#include "scene/scene.h"
 
 namespace gnomon::renderer {
 
@@ -31,7 +31,7 @@ struct RendererDesc {
     float subsurfaceBiasMetres = 0.02f;  // with shadowDrawing.subsurfaceFronts
     ShadowDrawing shadowDrawing;
     bool readFaceNormals = true;  // off: they are derived from the depth buffer
-    bool shadowBounds = true;  // searches of Filter::Pcss end where the bounds of the shadowmaps tell the result
+    bool shadowBounds = true;     // searches of Filter::Pcss end where the bounds of the shadowmaps tell the result
     ListReservation listReservation = ListReservation::Accurate;
     std::uint32_t fixedListEntriesPerTile = 32;          // with ListReservation::Fixed
     std::uint32_t subgroupSize = 0;                      // 0: the device's own
@@ -52,9 +52,9 @@ struct PassTime {
 
 struct MemoryUseRow {
     std::string name;
-    std::uint64_t bytes = 0;     // of one copy
-    bool library = false;        // of the library; else of the reference renderer
-    std::uint32_t copies = 1;    // one per frame in flight
+    std::uint64_t bytes = 0;   // of one copy
+    bool library = false;      // of the library; else of the reference renderer
+    std::uint32_t copies = 1;  // one per frame in flight
 };
 
 struct FrameReport {

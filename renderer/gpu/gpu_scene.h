@@ -20,8 +20,8 @@
 #include "renderer/gpu/cull_volume.h"
 #include "renderer/gpu/pipeline.h"
 #include "renderer/gpu/resources.h"
-#include "renderer/scene/pose.h"
-#include "renderer/scene/scene.h"
+#include "scene/pose.h"
+#include "scene/scene.h"
 
 namespace gnomon::renderer {
 

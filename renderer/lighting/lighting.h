@@ -9,7 +9,7 @@
 #include "renderer/gpu/resources.h"
 #include "renderer/gpu/timer.h"
 #include "renderer/lighting/lighting_pipelines.h"
-#include "renderer/scene/scene.h"
+#include "scene/scene.h"
 
 namespace gnomon::renderer {
 

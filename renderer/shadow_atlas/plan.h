@@ -14,8 +14,8 @@
 
 #include "gnomon/scene.h"
 #include "renderer/gpu/cull_volume.h"
-#include "renderer/scene/scene.h"
 #include "renderer/shadow_atlas/cascades.h"
+#include "scene/scene.h"
 
 namespace gnomon::renderer {
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "renderer/builtin/builtin.h"
-#include "renderer/picture/picture.h"
+#include "picture/picture.h"
 #include "renderer/renderer.h"
+#include "scene/builtin/builtin.h"
 
 namespace gnomon::renderer::image_test {
 
@@ -20,7 +20,9 @@ bool fullRun();
 /// True in a build with AddressSanitizer.
 bool sanitized();
 /// False where a handful of cases must do: in a build with sanitizers that is no full run.
-inline bool thorough() { return fullRun() || !sanitized(); }
+inline bool thorough() {
+    return fullRun() || !sanitized();
+}
 
 /// One test per suitable Vulkan device; fails on any validation message.
 class ImageTest : public ::testing::TestWithParam<std::size_t> {
@@ -32,8 +34,8 @@ protected:
 std::vector<std::size_t> deviceIndices();
 std::string deviceTestName(const ::testing::TestParamInfo<std::size_t>& info);
 
-#define GNOMON_IMAGE_TEST_SUITE(suite)       \
-    class suite : public ImageTest {};       \
+#define GNOMON_IMAGE_TEST_SUITE(suite) \
+    class suite : public ImageTest {}; \
     INSTANTIATE_TEST_SUITE_P(EveryDevice, suite, ::testing::ValuesIn(deviceIndices()), deviceTestName)
 
 /// A scene with its camera. `scattered` shadowed lights are added to the scene's own.

@@ -1,11 +1,11 @@
-// Deferred equals inline in real scenes, where they are: in the folder that GNOMON_SCENES_DIR names. Every glTF file that
-// loads, each with 64 lights more. Left out in builds with sanitizers unless GNOMON_FULL=1.
+// Deferred equals inline in real scenes, where they are: in the folder that GNOMON_SCENES_DIR names. Every glTF file
+// that loads, each with 64 lights more. Left out in builds with sanitizers unless GNOMON_FULL=1.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
 #include "image/renderer/harness.h"
-#include "renderer/scene/load_gltf.h"
+#include "scene/load_gltf.h"
 
 namespace gnomon::renderer::image_test {
 namespace {
@@ -21,7 +21,8 @@ fs::path scenesFolder() {
 
 // Folders that hold files for other tests: broken ones, and ones that need what we refuse.
 bool isForLoaderTests(const fs::path& file) {
-    return std::ranges::any_of(file, [](const fs::path& part) { return part == "malformed" || part == "unsupported_ext"; });
+    return std::ranges::any_of(file,
+                               [](const fs::path& part) { return part == "malformed" || part == "unsupported_ext"; });
 }
 
 // Eyes inside or near the scene, where framing the whole of it would show little.
@@ -49,7 +50,8 @@ std::vector<fs::path> sceneFiles() {
     if (!fs::is_directory(scenesFolder())) return files;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(scenesFolder())) {
         const fs::path extension = entry.path().extension();
-        if ((extension == ".glb" || extension == ".gltf") && !isForLoaderTests(entry.path())) files.push_back(entry.path());
+        if ((extension == ".glb" || extension == ".gltf") && !isForLoaderTests(entry.path()))
+            files.push_back(entry.path());
     }
     std::ranges::sort(files);
     return files;
@@ -72,14 +74,15 @@ TEST_P(RealScenes, DeferredIsInline) {
         completeLights(view.scene);
         view.camera = cameraFor(file, view.scene);
         const std::uint64_t before = worst.pixels;
-        const Frame frame = expectDeferredIsInline(device(), view.name + "+64", view, smallDesc(200, 112), worst, false);
+        const Frame frame =
+            expectDeferredIsInline(device(), view.name + "+64", view, smallDesc(200, 112), worst, false);
         const FrameStatistics& s = frame.report.statistics;
-        std::printf("[ figure   ] %s: %s+64: %llu pixels differ; %u of %zu lights, %.2f list entries and %.2f slots per "
-                    "tile with geometry\n",
-                    device().info().name.c_str(), view.name.c_str(),
-                    static_cast<unsigned long long>(worst.pixels - before), s.lights.visible, view.scene.lights.size(),
-                    double(s.earlyEntries) / std::max(s.tilesWithGeometry, 1u),
-                    double(s.finalSlotEntries) / std::max(s.tilesWithGeometry, 1u));
+        std::printf(
+            "[ figure   ] %s: %s+64: %llu pixels differ; %u of %zu lights, %.2f list entries and %.2f slots per "
+            "tile with geometry\n",
+            device().info().name.c_str(), view.name.c_str(), static_cast<unsigned long long>(worst.pixels - before),
+            s.lights.visible, view.scene.lights.size(), double(s.earlyEntries) / std::max(s.tilesWithGeometry, 1u),
+            double(s.finalSlotEntries) / std::max(s.tilesWithGeometry, 1u));
         ++drawn;
     }
     EXPECT_GT(drawn, 0u);

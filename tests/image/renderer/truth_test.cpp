@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "image/renderer/harness.h"
-#include "renderer/truth/light_truth.h"
+#include "truth/light_truth.h"
 
 namespace gnomon::renderer::image_test {
 namespace {
@@ -39,7 +39,7 @@ struct LightCase {
 // Always: what Verify has not.
 constexpr LightCase kLights[] = {
     {"empty-plane", 0, false}, {"sphere-on-plane", 0, false}, {"boxes", 0, false},  {"boxes", 1, true},
-    {"boxes", 2, false},       {"columns", 3, false},        {"columns", 5, true}, {"cloth", 0, true},
+    {"boxes", 2, false},       {"columns", 3, false},         {"columns", 5, true}, {"cloth", 0, true},
     {"cloth", 1, false},       {"masked", 0, false},          {"masked", 1, false}, {"single-triangle", 0, false}};
 
 struct Counts {

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "image/renderer/harness.h"
-#include "renderer/truth/figures.h"
+#include "truth/figures.h"
 
 namespace gnomon::renderer::image_test {
 namespace {
@@ -54,12 +54,9 @@ TEST_P(Verify, AcneAndLeakStayWithinTheirLimits) {
         Filter filter;
         const char* name;
         bool always;
-    } const cases[] = {{"boxes", Filter::Pcss, "pcss", true},
-                       {"sphere-on-plane", Filter::Pcf, "pcf", true},
-                       {"masked", Filter::Hard, "hard", true},
-                       {"bias-lab", Filter::Pcss, "pcss", true},
-                       {"sundial", Filter::Pcss, "pcss", false},
-                       {"cloth", Filter::Pcf, "pcf", false}};
+    } const cases[] = {{"boxes", Filter::Pcss, "pcss", true},    {"sphere-on-plane", Filter::Pcf, "pcf", true},
+                       {"masked", Filter::Hard, "hard", true},   {"bias-lab", Filter::Pcss, "pcss", true},
+                       {"sundial", Filter::Pcss, "pcss", false}, {"cloth", Filter::Pcf, "pcf", false}};
     for (const auto& [scene, filter, name, always] : cases) {
         if (!always && !fullRun()) continue;
         SCOPED_TRACE(std::string(scene) + " " + name);

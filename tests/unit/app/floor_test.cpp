@@ -1,9 +1,9 @@
 // The arithmetic of the tables: spreads of times, and what a pass cannot do without.
-#include "app/floor.h"
+#include "app/bench/floor.h"
 
 #include <gtest/gtest.h>
 
-#include "app/spread.h"
+#include "app/bench/spread.h"
 
 namespace gnomon::app {
 namespace {

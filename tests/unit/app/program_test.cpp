@@ -9,7 +9,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "renderer/picture/picture.h"
+#include "picture/picture.h"
 #include "unit/app/program.h"
 
 namespace gnomon::app {
@@ -48,8 +48,8 @@ protected:
 };
 
 TEST_F(Program, HelpAndVersionAreGood) {
-    for (const char* arguments : {"--help", "--version", "render --help", "bench --help", "verify --help", "compare --help",
-                                  "devices --help", "scenes --help"}) {
+    for (const char* arguments : {"--help", "--version", "render --help", "bench --help", "verify --help",
+                                  "compare --help", "devices --help", "scenes --help"}) {
         const Outcome result = run(arguments);
         EXPECT_EQ(result.exitCode, 0) << arguments;
         EXPECT_NE(result.out, "") << arguments;
@@ -262,7 +262,8 @@ TEST_F(Program, SweepsBiases) {
     EXPECT_DOUBLE_EQ(json["sweepBest"]["wrong"].get<double>(), best);
     EXPECT_LT(best, 0.01);
     EXPECT_EQ(json["ratio"], json["sweepBest"]["ratio"]);
-    expectGood("verify boxes --size 80x45 --filter hard --quiet --bias hardware --hardware-bias 1024,2 --json one.json");
+    expectGood(
+        "verify boxes --size 80x45 --filter hard --quiet --bias hardware --hardware-bias 1024,2 --json one.json");
     EXPECT_EQ(readJson("one.json")["total"], [&] {
         nlohmann::json row = rows[5];
         for (const char* key : {"bias", "constant", "slope", "subsurface"}) row.erase(key);
@@ -424,7 +425,8 @@ TEST_F(Program, BenchPresetsGiveThePapersTables) {
     EXPECT_NEAR(percent, 100.0, 1e-6);
 }
 
-// Inline shading is measured without its way out of full lists, so lists that are full are refused, not measured wrongly.
+// Inline shading is measured without its way out of full lists, so lists that are full are refused, not measured
+// wrongly.
 TEST_F(Program, BenchNeedsListsThatFit) {
     const std::string full = " --size 64x64 --warmup 0 --frames 1 --quiet --list-entries 1";
     expectGood("bench boxes --variants deferred" + full);
@@ -444,8 +446,8 @@ TEST_F(Program, BenchFloorsAreMeasured) {
     const nlohmann::json json = readJson("out.json");
     for (const char* rate : {"copyBytesPerSecond", "fetchesPerSecond", "gathersPerSecond"})
         EXPECT_GT(json["rates"][rate], 0.0) << rate;
-    for (const char* pass : {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate",
-                             "generate_shadows", "lighting"}) {
+    for (const char* pass :
+         {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "generate_shadows", "lighting"}) {
         const nlohmann::json& floor = json["variants"]["deferred"]["passes"][pass]["floor"];
         EXPECT_GT(floor["ms"], 0.0) << pass;
         EXPECT_GT(floor["ratio"], 0.0) << pass;

@@ -1,9 +1,9 @@
 // What the bias lab promises: that each provocation is there, at its measure.
 
-#include "renderer/builtin/bias_lab.h"
-#include "renderer/builtin/builtin.h"
-#include "renderer/builtin/implicit_surface.h"
-#include "renderer/builtin/triangle_grid.h"
+#include "scene/builtin/bias_lab.h"
+#include "scene/builtin/builtin.h"
+#include "scene/builtin/implicit_surface.h"
+#include "scene/builtin/triangle_grid.h"
 
 #include <gtest/gtest.h>
 #include <algorithm>

@@ -1,7 +1,7 @@
 // What moves in the courtyard: sound skins, loops without a seam, feet on the ground.
 
-#include "renderer/builtin/builtin.h"
-#include "renderer/builtin/courtyard_figure.h"
+#include "scene/builtin/builtin.h"
+#include "scene/builtin/courtyard_figure.h"
 
 #include <gtest/gtest.h>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Scattered lights: deterministic, in free air, as dense as promised, in scenes of any size.
 
-#include "renderer/builtin/builtin.h"
-#include "renderer/builtin/random.h"
-#include "renderer/builtin/tile_samples.h"
-#include "renderer/builtin/triangle_grid.h"
+#include "scene/builtin/builtin.h"
+#include "scene/builtin/random.h"
+#include "scene/builtin/tile_samples.h"
+#include "scene/builtin/triangle_grid.h"
 
 #include <gtest/gtest.h>
 #include <cmath>

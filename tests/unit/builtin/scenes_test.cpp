@@ -1,8 +1,8 @@
 // Every built-in scene: the same each time, sound geometry, lights in free air, sizes within their limits.
 
-#include "renderer/builtin/builtin.h"
-#include "renderer/builtin/tile_samples.h"
-#include "renderer/builtin/triangle_grid.h"
+#include "scene/builtin/builtin.h"
+#include "scene/builtin/tile_samples.h"
+#include "scene/builtin/triangle_grid.h"
 
 #include <gtest/gtest.h>
 #include <cmath>

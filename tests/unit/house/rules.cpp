@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRooms[] = {"include", "src",   "visualize", "reference", "renderer", "app", "examples",
-                                  "tests",   "bench", "docs",      "cmake",     "scripts"};
+constexpr const char* kRooms[] = {"include",  "src", "visualize", "inspect", "reference", "scene", "truth", "picture",
+                                  "renderer", "app", "examples",  "tests",   "bench",     "docs",  "cmake", "scripts"};
 constexpr std::string_view kTextEndings[] = {".h",  ".cpp",   ".glsl", ".comp", ".vert", ".frag",
                                              ".md", ".cmake", ".txt",  ".sh",   ".json"};
 
@@ -36,10 +36,19 @@ const std::map<std::string, Allowed>& cppRules() {
         {"src", {{"src", "gpu_interface", "include"}}},
         {"reference", {{"reference", "gpu_interface"}, false}},
         {"visualize", {{"visualize", "src", "gpu_interface", "include"}}},
-        {"renderer", {{"renderer", "src", "gpu_interface", "include"}, true, true}},
-        {"app", {{"app", "renderer", "visualize", "reference", "src", "gpu_interface", "include"}, true, true}},
+        {"scene", {{"scene", "include"}, false, true}},
+        {"truth", {{"truth", "scene", "include"}, false, true}},
+        {"picture", {{"picture"}, false, true}},
+        {"renderer", {{"renderer", "scene", "picture", "src", "gpu_interface", "include"}, true, true}},
+        {"app",
+         {{"app", "renderer", "scene", "truth", "picture", "visualize", "reference", "src", "gpu_interface", "include"},
+          true,
+          true}},
         {"app/view",
-         {{"app/view", "app", "renderer", "visualize", "reference", "src", "gpu_interface", "include"}, true, true}},
+         {{"app/view", "app", "renderer", "scene", "truth", "picture", "visualize", "reference", "src", "gpu_interface",
+           "include"},
+          true,
+          true}},
         {"examples", {{"examples", "include"}}},
     };
     return rules;
@@ -60,18 +69,104 @@ const std::map<std::string, Allowed>& shaderRules() {
 
 // C++20's headers, without the <name.h> forms of C.
 bool isStandard(const std::string& name) {
-    static const std::set<std::string> names = {
-        "algorithm", "any", "array", "atomic", "barrier", "bit", "bitset", "cassert", "cctype", "cerrno", "cfenv",
-        "cfloat", "charconv", "chrono", "cinttypes", "climits", "clocale", "cmath", "codecvt", "compare", "complex",
-        "concepts", "condition_variable", "coroutine", "csetjmp", "csignal", "cstdarg", "cstddef", "cstdint", "cstdio",
-        "cstdlib", "cstring", "ctime", "cuchar", "cwchar", "cwctype", "deque", "exception", "execution", "filesystem",
-        "format", "forward_list", "fstream", "functional", "future", "initializer_list", "iomanip", "ios", "iosfwd",
-        "iostream", "istream", "iterator", "latch", "limits", "list", "locale", "map", "memory", "memory_resource",
-        "mutex", "new", "numbers", "numeric", "optional", "ostream", "queue", "random", "ranges", "ratio", "regex",
-        "scoped_allocator", "semaphore", "set", "shared_mutex", "source_location", "span", "sstream", "stack",
-        "stdexcept", "stop_token", "streambuf", "string", "string_view", "strstream", "syncstream", "system_error",
-        "thread", "tuple", "type_traits", "typeindex", "typeinfo", "unordered_map", "unordered_set", "utility",
-        "valarray", "variant", "vector", "version"};
+    static const std::set<std::string> names = {"algorithm",
+                                                "any",
+                                                "array",
+                                                "atomic",
+                                                "barrier",
+                                                "bit",
+                                                "bitset",
+                                                "cassert",
+                                                "cctype",
+                                                "cerrno",
+                                                "cfenv",
+                                                "cfloat",
+                                                "charconv",
+                                                "chrono",
+                                                "cinttypes",
+                                                "climits",
+                                                "clocale",
+                                                "cmath",
+                                                "codecvt",
+                                                "compare",
+                                                "complex",
+                                                "concepts",
+                                                "condition_variable",
+                                                "coroutine",
+                                                "csetjmp",
+                                                "csignal",
+                                                "cstdarg",
+                                                "cstddef",
+                                                "cstdint",
+                                                "cstdio",
+                                                "cstdlib",
+                                                "cstring",
+                                                "ctime",
+                                                "cuchar",
+                                                "cwchar",
+                                                "cwctype",
+                                                "deque",
+                                                "exception",
+                                                "execution",
+                                                "filesystem",
+                                                "format",
+                                                "forward_list",
+                                                "fstream",
+                                                "functional",
+                                                "future",
+                                                "initializer_list",
+                                                "iomanip",
+                                                "ios",
+                                                "iosfwd",
+                                                "iostream",
+                                                "istream",
+                                                "iterator",
+                                                "latch",
+                                                "limits",
+                                                "list",
+                                                "locale",
+                                                "map",
+                                                "memory",
+                                                "memory_resource",
+                                                "mutex",
+                                                "new",
+                                                "numbers",
+                                                "numeric",
+                                                "optional",
+                                                "ostream",
+                                                "queue",
+                                                "random",
+                                                "ranges",
+                                                "ratio",
+                                                "regex",
+                                                "scoped_allocator",
+                                                "semaphore",
+                                                "set",
+                                                "shared_mutex",
+                                                "source_location",
+                                                "span",
+                                                "sstream",
+                                                "stack",
+                                                "stdexcept",
+                                                "stop_token",
+                                                "streambuf",
+                                                "string",
+                                                "string_view",
+                                                "strstream",
+                                                "syncstream",
+                                                "system_error",
+                                                "thread",
+                                                "tuple",
+                                                "type_traits",
+                                                "typeindex",
+                                                "typeinfo",
+                                                "unordered_map",
+                                                "unordered_set",
+                                                "utility",
+                                                "valarray",
+                                                "variant",
+                                                "vector",
+                                                "version"};
     return names.contains(name);
 }
 
@@ -80,13 +175,16 @@ bool isGui(const std::string& name) {
     return std::regex_search(name, pattern);
 }
 
-bool endsWith(std::string_view text, std::string_view end) { return text.ends_with(end); }
+bool endsWith(std::string_view text, std::string_view end) {
+    return text.ends_with(end);
+}
 
 // The project's file that an include names, or nothing. Search order: beside the includer, then the include paths.
 std::string resolve(const std::string& includer, const Include& include, const std::set<std::string>& paths) {
     std::vector<fs::path> candidates;
     if (include.form == Include::Form::Quoted) candidates.push_back(fs::path(includer).parent_path() / include.name);
-    for (const char* directory : {"include", "src", "", "tests"}) candidates.push_back(fs::path(directory) / include.name);
+    for (const char* directory : {"include", "src", "", "tests"})
+        candidates.push_back(fs::path(directory) / include.name);
     for (const fs::path& candidate : candidates) {
         const std::string normal = candidate.lexically_normal().generic_string();
         if (paths.contains(normal)) return normal;
@@ -105,9 +203,9 @@ std::string refusal(const std::string& room, const Allowed& allowed, const Inclu
     if (shader && room == "src" && include.name == "gnomon_host_provider.glsl") return "";  // the host's own file
     if (!target.empty()) {
         const std::string other = roomOf(target);
-        const bool open = std::ranges::find(allowed.rooms, other) != allowed.rooms.end() ||
-                          (room == "reference" &&
-                           (target == "include/gnomon/scene.h" || target == "include/gnomon/result.h"));
+        const bool open =
+            std::ranges::find(allowed.rooms, other) != allowed.rooms.end() ||
+            (room == "reference" && (target == "include/gnomon/scene.h" || target == "include/gnomon/result.h"));
         return open ? "" : "'" + room + "' must not see '" + (other.empty() ? target : other) + "'";
     }
     if (shader) return "no such file in the project";
@@ -120,7 +218,9 @@ std::string refusal(const std::string& room, const Allowed& allowed, const Inclu
     return allowed.thirdParty ? "" : "'" + room + "' may see the C++ standard library, Vulkan and the project alone";
 }
 
-std::string at(const TextFile& file, std::size_t line) { return file.path + ":" + std::to_string(line) + ": "; }
+std::string at(const TextFile& file, std::size_t line) {
+    return file.path + ":" + std::to_string(line) + ": ";
+}
 
 std::size_t lineCount(std::string_view text) {
     const auto ends = static_cast<std::size_t>(std::ranges::count(text, '\n'));
@@ -184,7 +284,9 @@ std::string roomOf(std::string_view path) {
     return slash == std::string_view::npos ? std::string() : std::string(path.substr(0, slash));
 }
 
-bool isCpp(std::string_view path) { return endsWith(path, ".h") || endsWith(path, ".cpp"); }
+bool isCpp(std::string_view path) {
+    return endsWith(path, ".h") || endsWith(path, ".cpp");
+}
 bool isShader(std::string_view path) {
     return endsWith(path, ".glsl") || endsWith(path, ".comp") || endsWith(path, ".vert") || endsWith(path, ".frag");
 }
@@ -210,15 +312,16 @@ Violations checkSize(const TextFile& file) {
     const std::size_t most = isCpp(file.path) ? kMaxCppLines : isShader(file.path) ? kMaxShaderLines : 0;
     const std::size_t lines = lineCount(file.text);
     if (most == 0 || lines < most) return {};
-    return {at(file, lines) + "has " + std::to_string(lines) + " lines; fewer than " + std::to_string(most) + " are allowed."};
+    return {at(file, lines) + "has " + std::to_string(lines) + " lines; fewer than " + std::to_string(most) +
+            " are allowed."};
 }
 
 Violations checkText(const TextFile& file) {
     // Split, so that this file passes its own check.
-    static const std::string words[] = {
-        std::string("keep in") + " sync", std::string("/wo") + "rk/",  std::string("/ho") + "me/",
-        std::string("/ro") + "ot/",       std::string(".inter") + "nal", std::string("artif") + "actory",
-        std::string("index") + "-url",    std::string("jf") + "rog"};
+    static const std::string words[] = {std::string("keep in") + " sync", std::string("/wo") + "rk/",
+                                        std::string("/ho") + "me/",       std::string("/ro") + "ot/",
+                                        std::string(".inter") + "nal",    std::string("artif") + "actory",
+                                        std::string("index") + "-url",    std::string("jf") + "rog"};
     Violations out;
     std::string lowered = file.text;
     std::ranges::transform(lowered, lowered.begin(),
@@ -241,7 +344,8 @@ Violations checkProject(const std::vector<TextFile>& files) {
     for (const TextFile& file : files) {
         Violations found = checkSize(file);
         std::ranges::move(checkText(file), std::back_inserter(found));
-        if (isCpp(file.path) || isShader(file.path)) std::ranges::move(checkIncludes(file, paths), std::back_inserter(found));
+        if (isCpp(file.path) || isShader(file.path))
+            std::ranges::move(checkIncludes(file, paths), std::back_inserter(found));
         std::ranges::move(found, std::back_inserter(out));
     }
     return out;

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/scene/load_gltf.h"
+#include "scene/load_gltf.h"
 
 namespace scene_tests {
 

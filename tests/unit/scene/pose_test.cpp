@@ -5,9 +5,9 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "renderer/scene/play_animation.h"
-#include "renderer/scene/pose.h"
-#include "renderer/scene/sample_animation.h"
+#include "scene/play_animation.h"
+#include "scene/pose.h"
+#include "scene/sample_animation.h"
 
 using namespace gnomon::renderer;
 

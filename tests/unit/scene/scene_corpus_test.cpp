@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "gltf_files.h"
-#include "renderer/scene/play_animation.h"
-#include "renderer/scene/pose.h"
+#include "scene/play_animation.h"
+#include "scene/pose.h"
 
 using namespace scene_tests;
 

@@ -3,7 +3,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "gltf_files.h"
-#include "renderer/scene/pose.h"
+#include "scene/pose.h"
 
 using namespace scene_tests;
 

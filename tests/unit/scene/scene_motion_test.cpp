@@ -4,7 +4,7 @@
 #include <random>
 
 #include "gltf_files.h"
-#include "renderer/scene/pose.h"
+#include "scene/pose.h"
 
 using namespace scene_tests;
 

@@ -6,7 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
-#include "renderer/truth/flicker.h"
+#include "truth/flicker.h"
 #include "unit/truth/truth_scenes.h"
 
 namespace gnomon::renderer::truth_test {

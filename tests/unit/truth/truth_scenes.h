@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "renderer/truth/figures.h"
+#include "truth/figures.h"
 
 namespace gnomon::renderer::truth_test {
 

@@ -1,0 +1,184 @@
+// Measures variants in one process, in turn, frame by frame: whatever the machine does meanwhile (clocks, heat, other
+// work) meets all of them alike, and the ratio is the result.
+
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+#include <set>
+
+#include "app/bench/preset.h"
+#include "app/bench/report.h"
+#include "app/commands.h"
+#include "app/errors.h"
+#include "app/outputs.h"
+#include "app/progress.h"
+#include "app/session.h"
+#include "picture/picture.h"
+
+namespace gnomon::app {
+namespace {
+
+struct BenchOptions {
+    Settings settings;
+    std::uint32_t warmUp = 20, frames = 200;
+    double framesPerSecond = 0.0;
+    std::vector<std::string> variants = {"deferred", "inline"};
+    std::string preset, json;
+    bool floor = false;
+};
+
+// A variant's name is a way to shadow, as in "inline", or that and a depth bias, as in "deferred@hardware".
+struct Way {
+    renderer::ShadowMode mode = renderer::ShadowMode::Deferred;
+    std::string bias;  // empty: that of the settings
+};
+Way wayOf(const std::string& name) {
+    const std::size_t at = name.find('@');
+    Way way = {shadowModeOf(name.substr(0, at)), at == std::string::npos ? "" : name.substr(at + 1)};
+    renderer::RendererDesc unused;
+    if (at != std::string::npos) setBias(way.bias, unused);
+    return way;
+}
+
+// Renderers remember two finished frames, so frames of one renderer go in pairs: submit two, wait, read both. Before
+// another renderer's turn all is waited for: nothing orders their frames on the device.
+class PairedFrames {
+public:
+    void submit(renderer::Renderer& renderer, renderer::ShadowMode mode, const renderer::SceneCamera& camera,
+                double timeSeconds, Variant* counting) {
+        if (renderer_ != &renderer || pending_.size() == 2) finish();
+        renderer_ = &renderer;
+        pending_.push_back({renderer.renderFrame(camera, mode, timeSeconds), counting});
+    }
+
+    void finish() {
+        if (renderer_ == nullptr) return;
+        renderer_->wait();
+        for (const Pending& frame : pending_)
+            if (frame.variant != nullptr) frame.variant->add(renderer_->report(frame.number));
+        pending_.clear();
+    }
+
+private:
+    struct Pending {
+        std::uint64_t number;
+        Variant* variant;  // null while warming up
+    };
+    renderer::Renderer* renderer_ = nullptr;
+    std::vector<Pending> pending_;
+};
+
+// One per depth bias: it is fixed in the pipelines.
+using Renderers = std::map<std::string, std::unique_ptr<renderer::Renderer>>;
+Renderers makeRenderers(const Session& session, const std::vector<std::string>& variants) {
+    Renderers renderers;
+    for (const std::string& name : variants) {
+        const std::string bias = wayOf(name).bias;
+        renderer::RendererDesc desc = session.rendererDesc();
+        desc.inlineNeedsLists = true;
+        if (!bias.empty()) setBias(bias, desc);
+        std::unique_ptr<renderer::Renderer>& slot = renderers[bias];
+        if (slot == nullptr) slot = std::make_unique<renderer::Renderer>(session.device(), session.scene(), desc);
+    }
+    return renderers;
+}
+
+std::vector<Variant> measure(const Session& session, const BenchOptions& options) {
+    const Renderers renderers = makeRenderers(session, options.variants);
+    std::vector<Variant> variants(options.variants.begin(), options.variants.end());
+    const std::uint32_t rounds = options.warmUp + options.frames;
+    FrameProgress progress(std::uint64_t{rounds} * variants.size());
+    PairedFrames frames;
+    std::uint64_t frame = 0;
+    for (std::uint32_t round = 0; round < rounds; ++round)
+        for (Variant& variant : variants) {
+            // Time goes on from frame to frame, so that shadowmaps age alike for all variants.
+            const double time = frameTime(options.settings.time, frame++, options.framesPerSecond);
+            const Way way = wayOf(variant.name());
+            frames.submit(*renderers.at(way.bias), way.mode, session.camera(), time,
+                          round >= options.warmUp ? &variant : nullptr);
+            progress.step();
+        }
+    frames.finish();
+    return variants;
+}
+
+// Inline shading is measured without its way out of full lists, so that it is as fast as it can be.
+void checkLists(const std::vector<Variant>& variants) {
+    for (const Variant& variant : variants) {
+        const FrameStatistics& s = variant.last().report.statistics;
+        if (wayOf(variant.name()).mode != renderer::ShadowMode::Deferred && s.listOverflowTiles != 0)
+            throw UsageError(
+                fmt::format("The light lists have no room for {} tiles, which '{}' cannot shade while it is measured: "
+                            "--list-entries {} would hold them.",
+                            s.listOverflowTiles, variant.name(), s.recommendedListEntries));
+    }
+}
+
+void benchWithin(const renderer::VulkanInstance& instance, const BenchOptions& options) {
+    const Session session(instance, options.settings);
+    if (session.device().timestampPeriodNs() == 0.0)
+        throw std::runtime_error(fmt::format("'{}' has no timestamps to measure with.", session.device().info().name));
+    Measurement measured = {session, measure(session, options), std::nullopt, options.warmUp, options.framesPerSecond};
+    checkLists(measured.variants);
+    if (options.floor) measured.rates = renderer::measureDeviceRates(session.device());
+    if (!options.json.empty()) {
+        Json json = describeBench(measured);
+        if (!options.preset.empty()) json["preset"] = describePreset(options.preset, measured);
+        writeJson(json, options.json);
+    }
+    printBench(measured);
+    printPreset(options.preset, measured);
+}
+
+int bench(const BenchOptions& options) {
+    rendererDescOf(options.settings);  // refuses wrong settings before anything is started
+    std::set<std::string> names;
+    for (const std::string& name : options.variants)
+        if (!options.settings.hardwareBias.empty() && name.find('@') != std::string::npos)
+            throw UsageError(fmt::format("--hardware-bias does not go with '{}', which has a bias of its own.", name));
+    for (const std::string& name : options.variants) {
+        wayOf(name);
+        if (!names.insert(name).second) throw UsageError(fmt::format("--variants names '{}' twice.", name));
+    }
+    checkPreset(options.preset, options.variants);
+    checkOutputs({&options.json, 1}, {&options.settings.scene, 1});
+    const renderer::VulkanInstance instance(instanceDescOf(options.settings));
+    benchWithin(instance, options);
+    return exitCodeOf(instance, options.settings);
+}
+
+}  // namespace
+
+void addBenchCommand(CLI::App& app, Work& chosen) {
+    CLI::App* command = app.add_subcommand("bench", "Measure ways to shadow against each other");
+    const auto options = std::make_shared<BenchOptions>();
+    addSettings(*command, options->settings);
+    command->add_option("--warmup", options->warmUp, "Rounds that do not count")
+        ->check(CLI::Range(0, 10'000))
+        ->capture_default_str();
+    command->add_option("--frames", options->frames, "Rounds that count")
+        ->check(CLI::Range(1, 100'000))
+        ->capture_default_str();
+    command->add_option("--fps", options->framesPerSecond, "Frames per second of the animations' time; 0: they stand")
+        ->check(numberWithin(0.0, 1e6))
+        ->capture_default_str();
+    command
+        ->add_option(
+            "--variants", options->variants,
+            "Some of deferred, inline, off, each perhaps with a depth bias of its own, as in deferred@hardware")
+        ->delimiter(',')
+        ->capture_default_str();
+    command->add_option("--preset", options->preset, "A table of the paper: sets scene, size, filter and variants")
+        ->check(CLI::IsMember(presetNames()));
+    command->add_flag("--floor", options->floor,
+                      "Measure the device's copies and texture samples too, and how far each pass is from them");
+    command->add_option("--json", options->json, "Write the measurement to a file")->check(fileName());
+    command->callback([&chosen, options, command] {
+        applyPreset(options->preset, *command, options->settings, options->variants);
+        chosen = [options] { return bench(*options); };
+    });
+}
+
+}  // namespace gnomon::app

@@ -1,0 +1,124 @@
+#include "app/verify/report.h"
+
+#include <fmt/format.h>
+
+namespace gnomon::app {
+
+std::string percent(double share) {
+    return fmt::format("{:.4f}", 100.0 * share);
+}
+
+namespace {
+
+using renderer::Figures;
+
+const char* nameOf(renderer::LightKind kind) {
+    switch (kind) {
+        case renderer::LightKind::Point:
+            return "point";
+        case renderer::LightKind::Spot:
+            return "spot";
+        case renderer::LightKind::Directional:
+            return "directional";
+    }
+    return "";
+}
+
+void printRow(const std::string& name, const Figures& f) {
+    const bool soft = f.penumbraPairs != 0;
+    fmt::print("{:<30.30} {:>10} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8}\n", name, f.pairs, percent(f.share(f.acne)),
+               percent(f.share(f.leak)), percent(f.share(f.contactLeak)), percent(f.share(f.edgeError)),
+               soft ? fmt::format("{:.4f}", f.penumbraRmse()) : "-",
+               f.ssimPixels != 0 ? fmt::format("{:.4f}", f.penumbraSsim()) : "-");
+}
+
+}  // namespace
+
+Json describe(const Figures& f) {
+    double low = 0.0, high = 0.0;
+    f.penumbraRmseInterval(low, high);
+    const auto count = static_cast<double>(f.penumbraPairs);
+    return {{"acne", f.share(f.acne)},
+            {"leak", f.share(f.leak)},
+            {"contactLeak", f.share(f.contactLeak)},
+            {"contactLeakOfContacts", f.contactLeakOfContacts()},
+            {"edgeError", f.share(f.edgeError)},
+            {"faintAcne", f.share(f.faintAcne)},
+            {"faintLeak", f.share(f.faintLeak)},
+            {"penumbraRmse", count == 0.0 ? Json() : Json(f.penumbraRmse())},
+            {"penumbraRmse95", count == 0.0 ? Json() : Json({low, high})},
+            {"penumbraSsim", f.ssimPixels == 0 ? Json() : Json(f.penumbraSsim())},
+            {"counts",
+             {{"pairs", f.pairs},
+              {"away", f.away},
+              {"lit", f.lit},
+              {"dark", f.dark},
+              {"edges", f.edges},
+              {"contacts", f.contacts},
+              {"acne", f.acne},
+              {"leak", f.leak},
+              {"contactLeak", f.contactLeak},
+              {"edgeError", f.edgeError},
+              {"faintAcne", f.faintAcne},
+              {"faintLeak", f.faintLeak},
+              {"softTruth", f.softPairs},
+              {"penumbra", f.penumbraPairs}}}};
+}
+
+void printVerified(const Session& session, const VerifyResult& result) {
+    const renderer::RendererDesc& desc = session.rendererDesc();
+    fmt::print("{}, {}x{}, filter {}, {}: shadows against ray-traced truth\n\n", session.settings().scene, desc.widthPx,
+               desc.heightPx, session.settings().filter, session.device().info().name);
+    fmt::print("{:<30} {:>10} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8}\n", "Light", "pairs", "acne %", "leak %", "contact %",
+               "edge %", "rmse", "ssim");
+    for (const VerifiedLight& light : result.lights) {
+        const std::string room = light.hasShadowmap ? "" : " (no map)";
+        printRow(fmt::format("#{} {}{}", light.index, light.name, room), light.figures.opaque);
+    }
+    printRow("total", result.total.opaque);
+    if (result.total.subsurface.pairs != 0) printRow("total, subsurface", result.total.subsurface);
+    const Figures& f = result.total.opaque;
+    fmt::print("\nAcne and leak together: {} % of {} pairs ({} lit, {} dark, {} facing away; {} at edges).\n",
+               percent(f.share(f.acne + f.leak)), f.pairs, f.lit, f.dark, f.away, f.edges);
+    fmt::print("Faint acne (truth lit, result 0.5 to 0.9): {} %; faint leak (truth dark, result 0.1 to 0.5): {} %.\n",
+               percent(f.share(f.faintAcne)), percent(f.share(f.faintLeak)));
+    fmt::print("Contact leak: {} % of the {} pairs that a blocker touches.\n", percent(f.contactLeakOfContacts()),
+               f.contacts);
+    if (f.penumbraPairs != 0) {
+        double low = 0.0, high = 0.0;
+        f.penumbraRmseInterval(low, high);
+        fmt::print("Penumbra RMSE: {:.4f} to {:.4f} with 95 % confidence, over {} pairs of the subset.\n", low, high,
+                   f.penumbraPairs);
+    }
+    if (result.flickerFrames != 0)
+        fmt::print("Flicker: {:.6f} in the mean over {} frames, {} pairs of neighbouring frames.\n",
+                   result.flicker.mean(), result.flickerFrames, result.flicker.pairs);
+    if (result.unseen != 0) fmt::print("{} casting lights reach no pixel.\n", result.unseen);
+    if (!result.sweep.empty()) printSweep(result.sweep);
+}
+
+Json describe(const Session& session, const VerifyResult& result) {
+    Json out = describe(session);
+    Json lights = Json::array();
+    for (const VerifiedLight& light : result.lights) {
+        Json row = {{"index", light.index},
+                    {"name", light.name},
+                    {"kind", nameOf(light.kind)},
+                    {"hasShadowmap", light.hasShadowmap}};
+        row.update(describe(light.figures.opaque));
+        if (result.flickerFrames != 0) row["flicker"] = light.flicker.mean();
+        row["subsurface"] = describe(light.figures.subsurface);
+        lights.push_back(row);
+    }
+    out["total"] = describe(result.total.opaque);
+    out["total"]["flicker"] = result.flickerFrames == 0 ? Json() : Json(result.flicker.mean());
+    out["flickerFrames"] = result.flickerFrames;
+    out["subsurface"] = describe(result.total.subsurface);
+    out["lights"] = lights;
+    out["castingLightsUnseen"] = result.unseen;
+    if (!result.sweep.empty()) describeSweep(result.sweep, out);
+    out["seconds"] = result.seconds;
+    return out;
+}
+
+}  // namespace gnomon::app

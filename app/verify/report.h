@@ -1,0 +1,40 @@
+#pragma once
+// What `verify` found, as a table and as JSON.
+
+#include <string>
+#include <vector>
+
+#include "app/frame_json.h"
+#include "app/verify/sweep.h"
+#include "truth/figures.h"
+#include "truth/flicker.h"
+
+namespace gnomon::app {
+
+struct VerifiedLight {
+    std::uint32_t index = 0;  // in the scene
+    std::string name;
+    renderer::LightKind kind = renderer::LightKind::Point;
+    bool hasShadowmap = true;  // the atlas had room
+    renderer::LightFigures figures;
+    renderer::FlickerFigures flicker;
+};
+
+struct VerifyResult {
+    std::vector<VerifiedLight> lights;  // those that cast and reach a pixel
+    renderer::LightFigures total;
+    std::uint32_t flickerFrames = 0;  // 0: not measured
+    renderer::FlickerFigures flicker;
+    std::uint32_t unseen = 0;         // casting lights that reach no pixel
+    std::vector<SweptSetting> sweep;  // the chosen setting first; empty: not asked for
+    double seconds = 0.0;
+};
+
+std::string percent(double share);  ///< with four decimals, without the sign
+
+Json describe(const renderer::Figures& figures);
+
+void printVerified(const Session& session, const VerifyResult& result);
+Json describe(const Session& session, const VerifyResult& result);
+
+}  // namespace gnomon::app

@@ -39,13 +39,15 @@ void checkShadowFadeOf(Findings& findings, std::size_t index, const LightModel& 
     const bool closeToCall = light.shadowFade < 1.0 && light.shadowFade > 1.0 - 1e-4;
     if (fades != light.shadowFades && !closeToCall)
         findings.add("light %zu %s told to have a fading shadow", index, fades ? "must not be" : "is not");
-    if (!near(gpuLight.shadowFade, light.shadowFade, 1e-4, 1e-4))
-        findings.add("light %zu has shadow fade %g instead of %g", index, gpuLight.shadowFade, light.shadowFade);
-    if (light.type != LightType::Directional) return;
-    if (!near(gpuLight.positionVs.x, light.shadowFadeScale, 1e-6, 0.0) ||
-        !near(gpuLight.positionVs.y, light.shadowFadeOffset, 1e-6, 0.0))
-        findings.add("light %zu: shadow fade by %g d + %g instead of %g d + %g", index, gpuLight.positionVs.x,
-                     gpuLight.positionVs.y, light.shadowFadeScale, light.shadowFadeOffset);
+    if (light.type != LightType::Directional) {
+        if (!near(gpuLight.shadowFade, light.shadowFade, 1e-4, 1e-4))
+            findings.add("light %zu has shadow fade %g instead of %g", index, gpuLight.shadowFade, light.shadowFade);
+        return;
+    }
+    if (!near(gpuLight.shadowFadePerMetre, light.shadowFadeScale, 1e-6, 0.0) ||
+        !near(gpuLight.shadowFade, light.shadowFadeOffset, 1e-6, 0.0))
+        findings.add("light %zu: shadow fade by %g d + %g instead of %g d + %g", index, gpuLight.shadowFadePerMetre,
+                     gpuLight.shadowFade, light.shadowFadeScale, light.shadowFadeOffset);
 }
 
 void checkShadowOf(Findings& findings, std::size_t index, const LightModel& light, const gpu::GpuLight& gpuLight) {

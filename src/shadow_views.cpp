@@ -83,13 +83,13 @@ bool setPlane(const float* m, bool orthographic, double b, float depthStep, gpu:
     const double area = std::hypot(across[2].x, across[2].y, across[2].z);
     if (!(area > 0.0)) return false;
     const double slope = orthographic ? -b : b;
-    gpu::vec4* const out[] = {&v.planeX, &v.planeY, &v.planeZ};
+    gpu::vec3* const out[] = {&v.planeX, &v.planeY, &v.planeZ};
     for (int i = 0; i < 3; ++i)
         *out[i] = {static_cast<float>(across[i].x / area), static_cast<float>(across[i].y / area),
-                   static_cast<float>(across[i].z / area), 0.0f};
-    v.planeX.w = static_cast<float>(slope / double(v.pxFromNdcScale.x));
-    v.planeY.w = static_cast<float>(slope / double(v.pxFromNdcScale.y));
-    v.planeZ.w = depthStep;
+                   static_cast<float>(across[i].z / area)};
+    v.planeSlopePerPx = {static_cast<float>(slope / double(v.pxFromNdcScale.x)),
+                         static_cast<float>(slope / double(v.pxFromNdcScale.y))};
+    v.depthStep = depthStep;
     return true;
 }
 

@@ -334,19 +334,19 @@ Result checkProjections(const FrameDesc& frame) {
 }
 
 void completeFrameConstants(const View::State& state, const FrameDesc& frame, GpuFrame& constants) {
-    constants.pools.x = state.sizes.listEntries;
-    constants.pools.y = state.sizes.visibilitySlots;
-    constants.pools.z = state.context->desc.fixedListEntriesPerTile;
-    if (frame.faceNormals.view != VK_NULL_HANDLE) constants.pools.w |= kFrameFaceNormalsBit;
-    if (frame.receiverFlags.view != VK_NULL_HANDLE) constants.pools.w |= kFrameReceiverFlagsBit;
-    if (frame.dropLightsFacedAway && state.context->desc.facedAwayIsDark) constants.pools.w |= kFrameFacingCullBit;
-    constants.shadows.x = frame.subsurfaceBiasMetres;
-    constants.shadows.y = frame.depthStep;
-    constants.random.x = static_cast<std::uint32_t>(frame.frameNumber);
-    constants.random.z = state.context->desc.pcss.searchTaps;
-    constants.random.w = state.context->desc.pcss.filterTaps;
+    constants.listCapacity = state.sizes.listEntries;
+    constants.slotCapacity = state.sizes.visibilitySlots;
+    constants.fixedListEntries = state.context->desc.fixedListEntriesPerTile;
+    if (frame.faceNormals.view != VK_NULL_HANDLE) constants.flags |= kFrameFaceNormalsBit;
+    if (frame.receiverFlags.view != VK_NULL_HANDLE) constants.flags |= kFrameReceiverFlagsBit;
+    if (frame.dropLightsFacedAway && state.context->desc.facedAwayIsDark) constants.flags |= kFrameFacingCullBit;
+    constants.subsurfaceBiasMetres = frame.subsurfaceBiasMetres;
+    constants.hostDepthStep = frame.depthStep;
+    constants.frameNumber = static_cast<std::uint32_t>(frame.frameNumber);
+    constants.pcssSearchTaps = state.context->desc.pcss.searchTaps;
+    constants.pcssFilterTaps = state.context->desc.pcss.filterTaps;
     // Golden ratio: the turns of successive frames fill the circle evenly, however many there are.
-    if (frame.patternPerFrame) constants.random.y = constants.random.x * 2654435769u;
+    if (frame.patternPerFrame) constants.patternTurn = constants.frameNumber * 2654435769u;
 }
 
 }  // namespace

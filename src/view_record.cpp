@@ -159,12 +159,13 @@ void View::recordHierarchicalDepth(VkCommandBuffer commands) noexcept {
     resetFrame(state, commands);
     const GpuFrame& f = state.frame;
     const bool pyramid = state.context->desc.hostDepthPyramid;  // then one lane per tile instead of one per pixel
-    recordPass(state, commands, kPassHierarchicalDepth, pyramid ? f.tileCounts.z : f.tileCounts.x,
-               pyramid ? f.tileCounts.w : f.tileCounts.y);
+    recordPass(state, commands, kPassHierarchicalDepth, pyramid ? f.tileGroupCounts.x : f.tileCounts.x,
+               pyramid ? f.tileGroupCounts.y : f.tileCounts.y);
 }
 
 void View::recordFindLightsApproximate(VkCommandBuffer commands) noexcept {
-    recordPass(*state_, commands, kPassFindLightsApproximate, state_->frame.tileCounts.z, state_->frame.tileCounts.w);
+    recordPass(*state_, commands, kPassFindLightsApproximate, state_->frame.tileGroupCounts.x,
+               state_->frame.tileGroupCounts.y);
 }
 
 void View::recordFindLightsAccurate(VkCommandBuffer commands) noexcept {

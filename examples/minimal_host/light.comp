@@ -58,12 +58,12 @@ void main() {
     if (!evaluateTileOf(gl_WorkGroupID.xy, tile)) return;
 #endif
     uvec2 pixel = tile * kShadowTileSizePx + gl_LocalInvocationID.xy;
-    if (any(greaterThanEqual(pixel, frame.extent.xy))) return;
+    if (any(greaterThanEqual(pixel, frame.extentPx))) return;
 #ifndef EVALUATE
     if (tileLightsAt(pixel).evaluate) return;  // the second pipeline shades this tile
 #endif
     Receiver receiver = receiverAt(pixel);
     vec3 colour = receiver.valid ? illuminate(pixel, receiver) : vec3(0.005, 0.008, 0.02);
     colour = pow(clamp(colour, 0.0, 1.0), vec3(1.0 / 2.2));
-    picture.rgba8[pixel.y * frame.extent.x + pixel.x] = packUnorm4x8(vec4(colour, 1.0));
+    picture.rgba8[pixel.y * frame.extentPx.x + pixel.x] = packUnorm4x8(vec4(colour, 1.0));
 }

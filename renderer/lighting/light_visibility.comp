@@ -13,7 +13,7 @@ const float kNotReached = -1.0;
 // Index among the view's lights, or their number.
 uint viewLight() {
     uint i = 0u;
-    while (i < frame.lightCounts.x && lights[i].hostIndex != hostIndex) ++i;
+    while (i < frame.lightCount && lights[i].hostIndex != hostIndex) ++i;
     return i;
 }
 
@@ -21,7 +21,7 @@ float visibilityAt(uvec2 pixel) {
     Receiver receiver = receiverAt(pixel);
     uint wanted = viewLight();
     vec3 toLight;
-    if (!receiver.valid || wanted == frame.lightCounts.x) return kNotReached;
+    if (!receiver.valid || wanted == frame.lightCount) return kNotReached;
     if (!lightReaches(lights[wanted], receiver.positionWs, receiver.mask, toLight)) return kNotReached;
     LightWalk walk = beginLightWalk(pixel);
     uint lightIndex, entry;
@@ -34,6 +34,6 @@ float visibilityAt(uvec2 pixel) {
 void main() {
     uvec2 local = uvec2(gl_LocalInvocationID.x % kShadowTileSizePx, gl_LocalInvocationID.x / kShadowTileSizePx);
     uvec2 pixel = gl_WorkGroupID.xy * kShadowTileSizePx + local;
-    if (any(greaterThanEqual(pixel, frame.extent.xy))) return;
+    if (any(greaterThanEqual(pixel, frame.extentPx))) return;
     imageStore(visibilityPicture, ivec2(pixel), vec4(visibilityAt(pixel)));
 }

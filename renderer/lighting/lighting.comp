@@ -16,18 +16,18 @@
 #include "shading/evaluate_lights.glsl"
 #endif
 
-layout(constant_id = 16) const uint kQuantise = 1;
-layout(constant_id = 17) const uint kWalksMasks = 1;  // inline: tiles without list space are shaded too
+layout(constant_id = kSpecFirstFree) const uint kQuantise = 1;
+layout(constant_id = kSpecFirstFree + 1) const uint kWalksMasks = 1;  // inline: tiles without list space are shaded too
 
 vec3 eyeDirection(Receiver receiver) {
-    return isOrthographic() ? -frame.axisZWs.xyz : normalize(frame.eyeWs.xyz - receiver.positionWs);
+    return isOrthographic() ? -frame.axisZWs : normalize(frame.eyeWs - receiver.positionWs);
 }
 
 // Alpha 0 says that no geometry is there.
 void writeBackground(uvec2 pixel) {
-    vec2 xy = (vec2(pixel) + 0.5) * frame.viewXyFromPixel.xy + frame.viewXyFromPixel.zw;
-    vec3 direction = frame.axisZWs.xyz;
-    if (!isOrthographic()) direction = normalize(frame.axisXWs.xyz * xy.x + frame.axisYWs.xyz * xy.y + direction);
+    vec2 xy = (vec2(pixel) + 0.5) * frame.viewXyPerPixel + frame.viewXyAtPixel0;
+    vec3 direction = frame.axisZWs;
+    if (!isOrthographic()) direction = normalize(frame.axisXWs * xy.x + frame.axisYWs * xy.y + direction);
     imageStore(picture, ivec2(pixel), vec4(backgroundRadiance(direction), 0.0));
 }
 
@@ -104,7 +104,7 @@ void main() {
     TileLights tileLights = tileLightsOf(gl_WorkGroupID.xy);
     if (tileLights.evaluate) return;
 #endif
-    if (any(greaterThanEqual(pixel, frame.extent.xy))) return;
+    if (any(greaterThanEqual(pixel, frame.extentPx))) return;
     Receiver receiver = receiverAt(pixel);
     if (!receiver.valid) {
         writeBackground(pixel);

@@ -5,8 +5,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "vulkan/work_group.glsl"
 
-layout(constant_id = 16) const uint kGather = 0;          // 1: 2x2 texels by textureGather, 0: one by texelFetch
-layout(constant_id = 17) const uint kSamplesPerLane = 1;  // a multiple of 16
+layout(constant_id = kSpecFirstFree) const uint kGather = 0;          // 1: 2x2 texels by textureGather, 0: one by texelFetch
+layout(constant_id = kSpecFirstFree + 1) const uint kSamplesPerLane = 1;  // a multiple of 16
 layout(set = 0, binding = 0) uniform texture2DArray atlas;
 layout(set = 0, binding = 1) uniform sampler nearest;
 layout(set = 0, binding = 2, std430) restrict writeonly buffer Result { float result[]; };

@@ -34,20 +34,20 @@ float rayLength(vec2 tangent) {
 // `tangent` are the receiver's in the view. `linearPerMetre`: how much linear depth a metre across the face is.
 vec2 planeSlope(GpuShadowView view, bool orthographic, vec3 n, vec2 ndc, float linear, vec2 tangent,
                 out float linearPerMetre) {
-    precise vec3 m = vec3(dot(n, view.planeX.xyz), dot(n, view.planeY.xyz), dot(n, view.planeZ.xyz));
+    precise vec3 m = vec3(dot(n, view.planeX), dot(n, view.planeY), dot(n, view.planeZ));
     precise float k = orthographic ? m.z : fma(m.x, ndc.x, fma(m.y, ndc.y, m.z));
     float least = kLeastCosine * rayLength(tangent);
     if (abs(k) < least) k = k < 0.0 ? -least : least;
     precise float inverse = 1.0 / (orthographic ? k : k * linear);
     precise float across = abs(orthographic ? inverse : inverse * linear);
     linearPerMetre = across;
-    precise vec2 slope = m.xy * vec2(view.planeX.w, view.planeY.w) * inverse;
+    precise vec2 slope = m.xy * view.planeSlopePerPx * inverse;
     return slope;
 }
 
 // How far the point moves toward the light along the light's view axis, metres.
 float linearBias(GpuLight light, Receiver receiver) {
-    return receiver.subsurface ? max(light.biasMetres, frame.shadows.x) : light.biasMetres;
+    return receiver.subsurface ? max(light.biasMetres, frame.subsurfaceBiasMetres) : light.biasMetres;
 }
 
 bool movesTowardLight(GpuLight light, Receiver receiver) {
@@ -60,7 +60,7 @@ bool movesTowardLight(GpuLight light, Receiver receiver) {
 // near plane of 5 cm, 16 mm, and no smaller bias could hold there.
 float deviceDepthSlack(GpuShadowView view, float depth, vec2 slope) {
     precise float rounding = 1e-6 * (abs(view.depthFromLinearA) + abs(depth - view.depthFromLinearA));
-    precise float slack = rounding + view.planeZ.w + kSnapPx * (abs(slope.x) + abs(slope.y));
+    precise float slack = rounding + view.depthStep + kSnapPx * (abs(slope.x) + abs(slope.y));
     return slack;
 }
 

@@ -21,7 +21,7 @@
 #include "shading/candidates.glsl"
 #include "shading/receiver.glsl"
 
-layout(constant_id = 2) const uint kListReservation = kReserveApproximate;
+layout(constant_id = kSpecListReservation) const uint kListReservation = kReserveApproximate;
 
 shared uint candidateWords[kLightGroupCount];
 shared uint tileWords[kLightGroupCount];
@@ -48,7 +48,7 @@ void testFroxel(uint lane, uint groups, Candidates candidates, Froxel froxel, ui
 }
 
 void testPixels(Receiver receiver, uint groups) {
-    bool cullFacing = (frame.pools.w & kFrameFacingCullBit) != 0u && !receiver.subsurface;
+    bool cullFacing = (frame.flags & kFrameFacingCullBit) != 0u && !receiver.subsurface;
     while (groups != 0u) {
         uint group = findLSB(groups);
         groups &= groups - 1u;
@@ -110,13 +110,13 @@ uint reserve(uint tileIndex, uint count) {
     if (kListReservation == kReserveAccurate) {
         uint wanted = roundUpToEarlyWord(count);
         uint slotId = wanted == 0u ? 0u : atomicAdd(counters.listEntries, wanted);
-        bool fits = slotId <= frame.pools.x && wanted <= frame.pools.x - slotId;
+        bool fits = slotId <= frame.listCapacity && wanted <= frame.listCapacity - slotId;
         if (!fits) atomicAdd(counters.listOverflowTiles, 1u);
         return fits ? slotId : kNoListSpace;
     }
     uint slotId = tileLightSlotIds[tileIndex];
     // Phase 2 looked for space only where it found lights.
-    if (kListReservation == kReserveFixed) capacity = capacity == 0u ? 0u : roundUpToEarlyWord(frame.pools.z);
+    if (kListReservation == kReserveFixed) capacity = capacity == 0u ? 0u : roundUpToEarlyWord(frame.fixedListEntries);
     if (slotId != kNoListSpace && count > capacity) {
         atomicAdd(counters.listOverflowTiles, 1u);
         return kNoListSpace;

@@ -17,7 +17,7 @@
 #include "find_lights_approximate/froxel.glsl"
 #include "shading/candidates.glsl"
 
-layout(constant_id = 2) const uint kListReservation = kReserveApproximate;
+layout(constant_id = kSpecListReservation) const uint kListReservation = kReserveApproximate;
 
 shared uint groupWords[kLightGroupCount];
 shared uint subgroupEntries[kSubgroupCount];
@@ -63,7 +63,7 @@ void main() {
     barrier();
 
     uvec2 tile = gl_WorkGroupID.xy * kTileGroupSizeTiles + laneCoordinates(lane);
-    bool inside = all(lessThan(tile, frame.tileCounts.xy));
+    bool inside = all(lessThan(tile, frame.tileCounts));
     uint tileIndex = inside ? tileIndexOf(tile) : 0u;
     vec2 depths = inside ? tileDepthRanges[tileIndex] : vec2(1.0, -1.0);
     bool hasGeometry = depths.x <= depths.y;
@@ -86,7 +86,7 @@ void main() {
 
     uint slotId;
     if (kListReservation == kReserveFixed) {
-        wanted = roundUpToEarlyWord(frame.pools.z);
+        wanted = roundUpToEarlyWord(frame.fixedListEntries);
         slotId = tileIndex * wanted;
     } else {
         total = 0u;
@@ -99,7 +99,7 @@ void main() {
         slotId = groupSlotId + before;
     }
     if (!inside) return;
-    bool fits = slotId <= frame.pools.x && wanted <= frame.pools.x - slotId;
+    bool fits = slotId <= frame.listCapacity && wanted <= frame.listCapacity - slotId;
     tileLightSlotIds[tileIndex] = fits || count == 0u ? (fits ? slotId : 0u) : kNoListSpace;
     if (!fits && count != 0u) atomicAdd(counters.listOverflowTiles, 1u);
 }

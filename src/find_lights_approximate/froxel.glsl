@@ -4,7 +4,7 @@
 // and never one that does: phase 3 writes into the space that is reserved from these answers.
 // Source: the paper, section 2.2 (three tests); Wronski 2017, "Cull that cone!".
 // Floats: every comparison gives way by `margin`, which bounds the rounding of both this test and the per-pixel test
-// (positions of up to frame.zBins.w metres). The per-pixel test compares cosines, whose rounding widens narrow cones
+// (positions of up to frame.largestCoordinate metres). The per-pixel test compares cosines, whose rounding widens narrow cones
 // the most, so cones are taken a little wider here.
 #ifndef GNOMON_FIND_LIGHTS_APPROXIMATE_FROXEL_GLSL
 #define GNOMON_FIND_LIGHTS_APPROXIMATE_FROXEL_GLSL
@@ -22,12 +22,12 @@ struct Froxel {
 
 Froxel froxelOf(uvec2 tile, float nearDepth, float farDepth) {
     Froxel f;
-    vec2 a = vec2(tile * kShadowTileSizePx) * frame.viewXyFromPixel.xy + frame.viewXyFromPixel.zw;
-    vec2 b = vec2((tile + 1u) * kShadowTileSizePx) * frame.viewXyFromPixel.xy + frame.viewXyFromPixel.zw;
+    vec2 a = vec2(tile * kShadowTileSizePx) * frame.viewXyPerPixel + frame.viewXyAtPixel0;
+    vec2 b = vec2((tile + 1u) * kShadowTileSizePx) * frame.viewXyPerPixel + frame.viewXyAtPixel0;
     f.slopeMin = min(a, b);
     f.slopeMax = max(a, b);
-    // Lights end at zBins.z, so a froxel need not reach farther (a host's pyramid may give infinity).
-    float end = max(nearDepth, min(farDepth, frame.zBins.z));
+    // No light reaches beyond, so a froxel need not reach farther (a host's pyramid may give infinity).
+    float end = max(nearDepth, min(farDepth, frame.farthestReach));
     vec2 boundsMin = f.slopeMin;
     vec2 boundsMax = f.slopeMax;
     if (!isOrthographic()) {
@@ -37,7 +37,7 @@ Froxel froxelOf(uvec2 tile, float nearDepth, float farDepth) {
     f.boxMin = vec3(boundsMin, nearDepth);
     f.boxMax = vec3(boundsMax, end);
     // 16 float steps of the largest coordinate: the chain from device depth to a distance rounds fewer times than that.
-    f.margin = 2e-6 * (frame.zBins.w + end + length(max(abs(boundsMin), abs(boundsMax))));
+    f.margin = 2e-6 * (frame.largestCoordinate + end + length(max(abs(boundsMin), abs(boundsMax))));
     return f;
 }
 

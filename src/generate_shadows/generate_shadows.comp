@@ -118,20 +118,20 @@ void main() {
         uint mine = lane / kSlotWords;
         if ((slotBits >> mine & 1u) != 0u) {
             uint slot = batchSlot + rankOf(slotBits, mine);
-            if (slot < frame.pools.y) visibilityWords[slot * kSlotWords + lane % kSlotWords] = word;
+            if (slot < frame.slotCapacity) visibilityWords[slot * kSlotWords + lane % kSlotWords] = word;
         }
         if (lane < count && (writtenBits >> lane & 1u) != 0u) {
             uint slot = kSlotAllLit;
             if ((slotBits >> lane & 1u) != 0u) {
                 slot = batchSlot + rankOf(slotBits, lane);
-                if (slot >= frame.pools.y) slot = kSlotEvaluate;
+                if (slot >= frame.slotCapacity) slot = kSlotEvaluate;
             }
             finalList[slotId + finalCount + rankOf(writtenBits, lane)] =
                 packFinalEntry(earlyLight(slotId, first + lane), slot);
         }
         if (slotBits != 0u) {
             uint end = batchSlot + bitCount(slotBits);
-            missing += end > frame.pools.y ? min(end - frame.pools.y, bitCount(slotBits)) : 0u;
+            missing += end > frame.slotCapacity ? min(end - frame.slotCapacity, bitCount(slotBits)) : 0u;
         }
         finalCount += bitCount(writtenBits);
     }

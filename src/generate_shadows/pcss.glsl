@@ -20,7 +20,7 @@
 
 #include "generate_shadows/pcss_search.glsl"
 
-layout(constant_id = 6) const uint kPcssFilterTaps = 24;
+layout(constant_id = kSpecPcssFilterTaps) const uint kPcssFilterTaps = 24;
 
 float filterTap(ShadowPoint s, vec2 corner) {
     precise vec2 first = floor(corner);
@@ -36,7 +36,7 @@ float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius) 
     precise float sum = 0.0;
     bool inside = !mayLeave(s, k, radius);
     vec2 direction = vec2(1.0, 0.0);
-    for (uint i = 0u; i < frame.random.w; ++i) {
+    for (uint i = 0u; i < frame.pcssFilterTaps; ++i) {
         precise float share = sqrt((float(i) + 0.5) * (1.0 / float(kPcssFilterTaps)));
         precise float away = share * radius;
         vec2 offset = tapOffset(k, direction);

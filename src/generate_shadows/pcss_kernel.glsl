@@ -21,7 +21,7 @@ struct PcssKernel {
 
 // Cosine and sine. 32 bits are a turn; in whole numbers, since every pipeline must have the same.
 vec2 turnOf(uvec2 pixel) {
-    uint turn = pixel.x * 3242174889u + pixel.y * 2447445414u + frame.random.y;
+    uint turn = pixel.x * 3242174889u + pixel.y * 2447445414u + frame.patternTurn;
     precise float f = float((turn << 2u) >> 8u) * (1.0 / 16777216.0);
     precise float t = (2.0 * f - 1.0) * 0.41421356;  // tangent of half an angle within 45 degrees
     precise float inverse = 1.0 / (1.0 + t * t);

@@ -5,9 +5,9 @@
 #include "generate_shadows/pcss_kernel.glsl"
 #include "shadow_bounds/shadow_bounds.glsl"
 
-// Loops over taps count to frame.random.z and w, which are the same numbers: a compiler that knew them would unroll the
+// Loops over taps count to frame.pcssSearchTaps and w, which are the same numbers: a compiler that knew them would unroll the
 // loops, at the cost of registers.
-layout(constant_id = 5) const uint kPcssSearchTaps = 16;
+layout(constant_id = kSpecPcssSearchTaps) const uint kPcssSearchTaps = 16;
 
 // What a search has found.
 struct Blockers {
@@ -75,7 +75,7 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visi
     if (!mayLeave(s, k, reach)) {
         float needed;
         if (knownByBounds(s, k, reach, needed, visibility)) return -1.0;
-        for (uint i = 0u; i < frame.random.z; ++i) {
+        for (uint i = 0u; i < frame.pcssSearchTaps; ++i) {
             float radius = searchRadius(i, reach);
             if (radius > needed && !found.allOcclude) break;  // beyond, there is no blocker
             vec2 offset = tapOffset(k, direction);
@@ -85,7 +85,7 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visi
             countBlockers(planeDepthsAt(s, first), stored, fma(radius, inverse, farthest0), found);
         }
     } else {
-        for (uint i = 0u; i < frame.random.z; ++i) {
+        for (uint i = 0u; i < frame.pcssSearchTaps; ++i) {
             float radius = searchRadius(i, reach);
             vec2 offset = tapOffset(k, direction);
             direction = nextDirection(direction);

@@ -10,8 +10,8 @@
 
 #include "gpu_interface/numbers.h"
 
-layout(constant_id = 1) const uint kProvider = kProviderPcss;
-layout(constant_id = 3) const uint kPcfRadius = 1;
+layout(constant_id = kSpecProvider) const uint kProvider = kProviderPcss;
+layout(constant_id = kSpecPcfRadius) const uint kPcfRadius = 1;
 
 #include "generate_shadows/cascades.glsl"
 #include "generate_shadows/hard.glsl"
@@ -67,9 +67,9 @@ float providerVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
 // How much of the shadow is there: directional lights lose it with the pixel's distance, others with their own.
 float shadowFadeOf(GpuLight light, Receiver receiver) {
     if (lightType(light) != kLightDirectional) return light.shadowFade;
-    precise vec3 d = receiver.positionWs - frame.eyeWs.xyz;
+    precise vec3 d = receiver.positionWs - frame.eyeWs;
     precise float distance = sqrt(dot(d, d));
-    precise float fade = light.positionVs.x * distance + light.positionVs.y;
+    precise float fade = light.shadowFadePerMetre * distance + light.shadowFade;
     return clamp(fade, 0.0, 1.0);
 }
 

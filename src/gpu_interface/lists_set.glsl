@@ -41,11 +41,11 @@ GNOMON_LISTS_BUFFER(kBindCounters, GNOMON_LISTS_ACCESS) CountersBlock { GpuCount
 uint tileIndexOf(uvec2 tile) { return tile.y * frame.tileCounts.x + tile.x; }
 uint tileGroupIndexOf(uvec2 tile) {
     uvec2 group = tile / kTileGroupSizeTiles;
-    return group.y * frame.tileCounts.z + group.x;
+    return group.y * frame.tileGroupCounts.x + group.x;
 }
 uint maskEntryOf(uvec2 pixel) {
     uvec2 maskTile = pixel / kMaskTileSizePx;
-    return (maskTile.y * frame.lightCounts.z + maskTile.x) * kLightMaskEntryWords;
+    return (maskTile.y * frame.maskTileColumns + maskTile.x) * kLightMaskEntryWords;
 }
 
 #endif

@@ -14,7 +14,7 @@
 #endif
 
 // Most hosts have one atlas: then nothing has to be chosen at every tap.
-layout(constant_id = 8) const uint kShadowAtlases = kMaxShadowAtlases;
+layout(constant_id = kSpecShadowAtlases) const uint kShadowAtlases = kMaxShadowAtlases;
 
 layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowViews, std430) restrict readonly buffer ShadowViewsBlock {
     GpuShadowView shadowViews[];

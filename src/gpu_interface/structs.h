@@ -20,8 +20,8 @@ struct vec3 {
 struct vec4 {
     float x, y, z, w;
 };
-struct uvec4 {
-    uint x, y, z, w;
+struct uvec2 {
+    uint x, y;
 };
 struct mat4 {
     vec4 column[4];
@@ -35,7 +35,7 @@ struct GpuLight {
     float rangeMetres;   // no influence beyond; 3.0e38 for directional lights
     vec3 directionWs;    // unit, from the light into the scene (spot axis, directional light's travel); 0 for points
     float cosOuter;      // spot: cosine of the half-angle of the cone; else -2
-    vec3 positionVs;     // metres; directional: x, y: the shadow's fade, saturate(x * distance to the eye + y)
+    vec3 positionVs;     // metres; 0 for directional lights
     float sinOuter;      // spot: sine of the half-angle; else 0
     vec3 directionVs;    // unit
     float sourceRadius;  // metres; directional: tangent of the angular radius
@@ -44,9 +44,11 @@ struct GpuLight {
     uint shadowView;     // first shadow view (points: of six, +X -X +Y -Y +Z -Z; cascades: nearest), or kNoShadowView
     uint hostIndex;      // index into the light array that the host gave
     float lightFade;     // above 0 to 1, multiplies the light
-    float shadowFade;    // 0..1, visibility = 1 - shadowFade * (1 - visibility)
-    float biasMetres;    // depth bias of this light
-    float reserved;
+    // Visibility = 1 - fade * (1 - visibility); fade = shadowFade, 0..1; directional lights: shadowFade +
+    // shadowFadePerMetre * distance between pixel and eye, cut to 0..1.
+    float shadowFade;
+    float biasMetres;  // depth bias of this light
+    float shadowFadePerMetre;
 };
 
 // One shadowmap view: a perspective or orthographic frustum drawn into a rectangle of an atlas layer.
@@ -58,22 +60,25 @@ struct GpuShadowView {
     vec2 rectMaxPx;          // one past its last pixel
     float depthFromLinearA;  // perspective: device depth = A + B / linear depth; orthographic: A + B * linear depth
     float depthFromLinearB;
-    uint flags;             // kShadowViewOrthographicBit, kShadowViewReversedZBit
-    uint atlasAndLayer;     // atlas in the low 8 bits, layer above
-    vec2 pxPerMetre;        // texels per metre at linear depth 1 m (perspective) or anywhere (orthographic)
-    vec2 atlasPerTexel;     // 1 / atlas width, 1 / atlas height
-    uint boundsFirst;       // shadow bounds: entry of the first block of the atlas layer,
-    uint boundsRow;         // blocks of the finest level in a row,
-    uint boundsBlocks;      // and in all; 0: the view has no bounds
+    uint flags;          // kShadowViewOrthographicBit, kShadowViewReversedZBit
+    uint atlasAndLayer;  // atlas in the low 8 bits, layer above
+    vec2 pxPerMetre;     // texels per metre at linear depth 1 m (perspective) or anywhere (orthographic)
+    vec2 atlasPerTexel;  // 1 / atlas width, 1 / atlas height
+    uint boundsFirst;    // shadow bounds: entry of the first block of the atlas layer,
+    uint boundsRow;      // blocks of the finest level in a row,
+    uint boundsBlocks;   // and in all; 0: the view has no bounds
     uint reserved;
     // A plane with unit normal n, in the view: with m = (n planeX, n planeY, n planeZ), the normal's part along the ray
     // through ndc, per metre of linear depth, is m.x ndc.x + m.y ndc.y + m.z = k (orthographic: m.z), and the slope of
-    // its device depth per texel m.xy * (planeX.w, planeY.w) / (k * linear depth, orthographic: k).
-    vec4 planeX;
-    vec4 planeY;
-    vec4 planeZ;         // w: step of the atlas' depth, beyond that of floats
+    // its device depth per texel m.xy * planeSlopePerPx / (k * linear depth, orthographic: k).
+    vec3 planeX;
+    float depthStep;  // of the atlas, beyond that of floats
+    vec3 planeY;
+    float reserved1;
+    vec3 planeZ;
+    float reserved2;
+    vec2 planeSlopePerPx;
     vec2 tangentPerNdc;  // lateral over linear depth; orthographic: 0
-    vec2 reserved2;
 };
 
 // A cell of the shadow bounds to be made this frame.
@@ -90,19 +95,40 @@ struct GpuShadowBoundsCell {
 
 // Constants of one frame and view.
 struct GpuFrame {
-    vec4 eyeWs;    // camera position, origin-relative metres; w: device depth of background
-    vec4 axisXWs;  // unit axes of the view in the world: right,
-    vec4 axisYWs;  // up,
-    vec4 axisZWs;  // and into the scene
-    vec4 viewXyFromPixel;      // xy scale, zw offset: view xy (at depth 1 if perspective) = pixel * scale + offset
-    vec4 viewDepthFromDevice;  // view depth = (x * d + y) / (z * d + w)
-    vec4 zBins;                // x near depth, y bins per metre, z farthest reach of a light, w largest |coordinate|
-    uvec4 extent;              // xy active extent in pixels, zw offset of the viewport in the host's images
-    uvec4 tileCounts;          // xy shadow tiles, zw tile groups
-    uvec4 lightCounts;         // x all lights, y directional lights, z mask tiles per row, w mask tile rows
-    uvec4 pools;               // x list entries, y visibility slots, z fixed entries per tile (debugging), w flags
-    vec4 shadows;              // x subsurface bias (m), y step of the host's depth buffer; zw unused
-    uvec4 random;              // x frame number, low 32 bits; y turns the filters' pattern, 2^32 to a turn; z, w taps
+    vec3 eyeWs;             // camera position, metres, relative to the frame's origin
+    float backgroundDepth;  // device depth of pixels without geometry
+    vec3 axisXWs;           // unit axes of the view in the world: right,
+    float zBinNearDepth;    // view depth at which the first zBin begins, metres
+    vec3 axisYWs;           // up,
+    float zBinsPerMetre;
+    vec3 axisZWs;         // and into the scene
+    float farthestReach;  // greatest view depth that a light reaches, metres
+    // View xy (at depth 1 if perspective) = pixel * viewXyPerPixel + viewXyAtPixel0.
+    vec2 viewXyPerPixel;
+    vec2 viewXyAtPixel0;
+    // View depth of device depth d = (numerator.x * d + numerator.y) / (denominator.x * d + denominator.y).
+    vec2 viewDepthNumerator;
+    vec2 viewDepthDenominator;
+    uvec2 extentPx;    // active extent
+    uvec2 viewportPx;  // where it begins in the host's images
+    uvec2 tileCounts;  // shadow tiles, across and down
+    uvec2 tileGroupCounts;
+    uint lightCount;
+    uint directionalLightCount;  // the first ones
+    uint maskTileColumns;
+    uint maskTileRows;
+    uint listCapacity;      // entries
+    uint slotCapacity;      // visibility slots
+    uint fixedListEntries;  // per tile, with kReserveFixed
+    uint flags;             // kFrameOrthographicBit ...
+    float subsurfaceBiasMetres;
+    float hostDepthStep;      // between neighbouring values of the host's depth buffer, beyond that of floats
+    float largestCoordinate;  // the scale of rounding errors, metres
+    float reserved;
+    uint frameNumber;  // low 32 bits
+    uint patternTurn;  // turns the filters' pattern; 2^32 to a turn
+    uint pcssSearchTaps;
+    uint pcssFilterTaps;
 };
 
 // What the passes count, written with atomics, cleared at the start of every frame.
@@ -133,7 +159,7 @@ struct GpuEvaluateHead {
 static_assert(sizeof(GpuLight) == 96);
 static_assert(sizeof(GpuShadowView) == 208);
 static_assert(sizeof(GpuShadowBoundsCell) == 32);
-static_assert(sizeof(GpuFrame) == 13 * 16);
+static_assert(sizeof(GpuFrame) == 12 * 16);
 static_assert(sizeof(GpuCounters) == 48);
 static_assert(sizeof(GpuEvaluateHead) == 16);
 }  // namespace gnomon::gpu

@@ -12,7 +12,7 @@
 #include "vulkan/work_group.glsl"
 #include "shading/receiver.glsl"
 
-layout(constant_id = 4) const uint kHostDepthPyramid = 0;
+layout(constant_id = kSpecHostDepthPyramid) const uint kHostDepthPyramid = 0;
 
 shared float sharedNear[kSubgroupCount];
 shared float sharedFar[kSubgroupCount];
@@ -20,7 +20,7 @@ shared float sharedFar[kSubgroupCount];
 #define kInfinity uintBitsToFloat(0x7F800000u)
 
 void convertHostPyramid(uvec2 tile) {
-    if (any(greaterThanEqual(tile, frame.tileCounts.xy))) return;
+    if (any(greaterThanEqual(tile, frame.tileCounts))) return;
     vec2 device = texelFetch(hostDepthPyramid, ivec2(tile), 0).xy;
     vec2 range = vec2(kInfinity, -kInfinity);
     if (!isBackground(device.x) || !isBackground(device.y)) {
@@ -40,7 +40,7 @@ void main() {
     }
     float near = kInfinity;
     float far = -kInfinity;
-    if (all(lessThan(cell, frame.extent.xy))) {
+    if (all(lessThan(cell, frame.extentPx))) {
         float d = hostDepthAt(cell);
         if (!isBackground(d)) {
             near = viewDepthOf(d);

@@ -162,17 +162,20 @@ Result deriveCamera(const Camera& camera, std::uint32_t widthPx, std::uint32_t h
 }
 
 void fillCameraConstants(const ViewCamera& camera, gpu::GpuFrame& frame) noexcept {
-    const auto toVec4 = [](Vec3 v, double w) {
-        return gpu::vec4{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z),
-                         static_cast<float>(w)};
+    const auto toVec2 = [](double x, double y) { return gpu::vec2{static_cast<float>(x), static_cast<float>(y)}; };
+    const auto toVec3 = [](Vec3 v) {
+        return gpu::vec3{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
     };
-    frame.eyeWs = toVec4(camera.eyeWs, camera.backgroundDevice);
-    frame.axisXWs = toVec4(camera.axisXWs, 0);
-    frame.axisYWs = toVec4(camera.axisYWs, 0);
-    frame.axisZWs = toVec4(camera.axisZWs, 0);
-    frame.viewXyFromPixel = toVec4({camera.xyScale[0], camera.xyScale[1], camera.xyOffset[0]}, camera.xyOffset[1]);
+    frame.eyeWs = toVec3(camera.eyeWs);
+    frame.backgroundDepth = static_cast<float>(camera.backgroundDevice);
+    frame.axisXWs = toVec3(camera.axisXWs);
+    frame.axisYWs = toVec3(camera.axisYWs);
+    frame.axisZWs = toVec3(camera.axisZWs);
+    frame.viewXyPerPixel = toVec2(camera.xyScale[0], camera.xyScale[1]);
+    frame.viewXyAtPixel0 = toVec2(camera.xyOffset[0], camera.xyOffset[1]);
     const double* d = camera.depthFromDevice;
-    frame.viewDepthFromDevice = toVec4({d[0], d[1], d[2]}, d[3]);
+    frame.viewDepthNumerator = toVec2(d[0], d[1]);
+    frame.viewDepthDenominator = toVec2(d[2], d[3]);
 }
 
 }  // namespace gnomon::prepare

@@ -152,11 +152,11 @@ void fillDirectional(const Light& light, const ViewCamera& camera, VisibleLight&
         offset = -end * scale;
         out.gpu.typeAndFlags |= gpu::kLightShadowFadesBit;
     }
-    out.gpu.positionVs = {static_cast<float>(scale), static_cast<float>(offset), 0.0f};
+    out.gpu.shadowFadePerMetre = static_cast<float>(scale);
+    out.gpu.shadowFade = static_cast<float>(offset);
     out.gpu.sourceRadius = static_cast<float>(std::tan(static_cast<double>(light.sourceRadius)));
     out.gpu.typeAndFlags |= gpu::kLightCastsBit | light.cascadeCount << gpu::kLightCascadesShift;
     out.gpu.shadowView = light.firstShadowView;
-    out.gpu.shadowFade = 1.0f;
 }
 
 void fillLocal(const Light& light, const ViewCamera& camera, const PrepareDesc& desc, VisibleLight& out) {

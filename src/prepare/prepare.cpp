@@ -74,16 +74,21 @@ gpu::GpuFrame frameConstants(const ViewInput& input, const prepare::ViewCamera& 
                              const prepare::ZBinLayout& zBins, const prepare::CullAndSort& lists) {
     gpu::GpuFrame frame = {};
     prepare::fillCameraConstants(camera, frame);
-    frame.zBins = {zBins.nearDepth, zBins.binsPerMetre, zBins.farthestReach,
-                   static_cast<float>(largestCoordinateOf(camera, lists.visible()))};
-    frame.extent = {input.widthPx, input.heightPx, input.viewportXPx, input.viewportYPx};
+    frame.zBinNearDepth = zBins.nearDepth;
+    frame.zBinsPerMetre = zBins.binsPerMetre;
+    frame.farthestReach = zBins.farthestReach;
+    frame.largestCoordinate = static_cast<float>(largestCoordinateOf(camera, lists.visible()));
+    frame.extentPx = {input.widthPx, input.heightPx};
+    frame.viewportPx = {input.viewportXPx, input.viewportYPx};
     frame.tileCounts = {divideRoundingUp(input.widthPx, gpu::kShadowTileSizePx),
-                        divideRoundingUp(input.heightPx, gpu::kShadowTileSizePx),
-                        divideRoundingUp(input.widthPx, gpu::kTileGroupSizePx),
-                        divideRoundingUp(input.heightPx, gpu::kTileGroupSizePx)};
-    frame.lightCounts = {static_cast<std::uint32_t>(lists.visible().size()), lists.directionalCount(), grid.columns,
-                         grid.rows};
-    frame.pools.w = camera.orthographic ? gpu::kFrameOrthographicBit : 0u;
+                        divideRoundingUp(input.heightPx, gpu::kShadowTileSizePx)};
+    frame.tileGroupCounts = {divideRoundingUp(input.widthPx, gpu::kTileGroupSizePx),
+                             divideRoundingUp(input.heightPx, gpu::kTileGroupSizePx)};
+    frame.lightCount = static_cast<std::uint32_t>(lists.visible().size());
+    frame.directionalLightCount = lists.directionalCount();
+    frame.maskTileColumns = grid.columns;
+    frame.maskTileRows = grid.rows;
+    frame.flags = camera.orthographic ? gpu::kFrameOrthographicBit : 0u;
     return frame;
 }
 

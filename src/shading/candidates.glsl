@@ -16,8 +16,8 @@ struct Candidates {
 // An endless depth counts as the farthest reach of a light, so that no infinity meets a zero (bins of a frame without
 // lights are 0 per metre).
 uint zBinOf(float viewDepth) {
-    float depth = min(viewDepth, frame.zBins.z);
-    return uint(clamp(floor((depth - frame.zBins.x) * frame.zBins.y), 0.0, float(kZBinCount - 1u)));
+    float depth = min(viewDepth, frame.farthestReach);
+    return uint(clamp(floor((depth - frame.zBinNearDepth) * frame.zBinsPerMetre), 0.0, float(kZBinCount - 1u)));
 }
 
 // Light indices that may matter between two depths; first above last where there is none.
@@ -47,7 +47,7 @@ uint rangeBits(uint group, uint first, uint last) {
 
 // Directional lights stand outside masks and zBins and are always candidates.
 uint directionalBits(uint group) {
-    uint count = frame.lightCounts.y;
+    uint count = frame.directionalLightCount;
     return count == 0u ? 0u : rangeBits(group, 0u, count - 1u);
 }
 
@@ -59,7 +59,7 @@ Candidates candidatesOf(uvec2 pixel, float nearDepth, float farDepth) {
     if (c.first <= c.last) {
         c.maskGroups = tileLightMasks[c.maskEntry] & rangeBits(0u, c.first / kLightGroupSize, c.last / kLightGroupSize);
     }
-    uint directionalGroups = (frame.lightCounts.y + kLightGroupSize - 1u) / kLightGroupSize;
+    uint directionalGroups = (frame.directionalLightCount + kLightGroupSize - 1u) / kLightGroupSize;
     c.groupBits = c.maskGroups | (directionalGroups == 0u ? 0u : rangeBits(0u, 0u, directionalGroups - 1u));
     return c;
 }

@@ -2,7 +2,7 @@
 // for, so it finds its lights through the tile light masks and the zBin of its own depth, and samples the standard
 // shadowmaps with the same filters (generate_shadows/visibility.glsl, with a Receiver that the shader fills itself).
 //
-//     ForwardWalk walk = beginForwardWalk(uvec2(gl_FragCoord.xy) - frame.extent.zw, viewDepth);
+//     ForwardWalk walk = beginForwardWalk(uvec2(gl_FragCoord.xy) - frame.viewportPx, viewDepth);
 //     uint lightIndex;
 //     while (nextForwardLight(walk, lightIndex)) { ... }
 #ifndef GNOMON_SHADING_FORWARD_LIGHTS_GLSL

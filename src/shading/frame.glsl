@@ -5,23 +5,23 @@
 
 #include "gpu_interface/lists_set.glsl"
 
-bool isOrthographic() { return (frame.pools.w & kFrameOrthographicBit) != 0u; }
-bool isBackground(float deviceDepth) { return deviceDepth == frame.eyeWs.w; }
+bool isOrthographic() { return (frame.flags & kFrameOrthographicBit) != 0u; }
+bool isBackground(float deviceDepth) { return deviceDepth == frame.backgroundDepth; }
 
 // Metres along the view axis.
 float viewDepthOf(float deviceDepth) {
-    precise float numerator = frame.viewDepthFromDevice.x * deviceDepth + frame.viewDepthFromDevice.y;
-    precise float denominator = frame.viewDepthFromDevice.z * deviceDepth + frame.viewDepthFromDevice.w;
+    precise float numerator = frame.viewDepthNumerator.x * deviceDepth + frame.viewDepthNumerator.y;
+    precise float denominator = frame.viewDepthDenominator.x * deviceDepth + frame.viewDepthDenominator.y;
     precise float depth = numerator / denominator;
     return depth;
 }
 
 // `pixel` in the active viewport, centres at .5; origin-relative metres.
 vec3 worldFromPixel(vec2 pixel, float viewDepth) {
-    precise vec2 xy = pixel * frame.viewXyFromPixel.xy + frame.viewXyFromPixel.zw;
+    precise vec2 xy = pixel * frame.viewXyPerPixel + frame.viewXyAtPixel0;
     precise vec2 scaled = isOrthographic() ? xy : xy * viewDepth;
-    precise vec3 p = frame.eyeWs.xyz + (frame.axisXWs.xyz * scaled.x + frame.axisYWs.xyz * scaled.y +
-                                        frame.axisZWs.xyz * viewDepth);
+    precise vec3 p = frame.eyeWs + (frame.axisXWs * scaled.x + frame.axisYWs * scaled.y +
+                                        frame.axisZWs * viewDepth);
     return p;
 }
 

@@ -21,20 +21,21 @@ const float kSteepest = 8.0;      // tangent between a face and the view plane t
 const float kRowRoundings = 4.0;  // what is left of a straight row's second difference, in roundings of its depths
 const float kSilhouette = 3.0;    // times as bent is the row across, where a surface ends beside the pixel
 
-float hostDepthAt(uvec2 pixel) { return texelFetch(hostDepth, ivec2(pixel + frame.extent.zw), 0).x; }
+float hostDepthAt(uvec2 pixel) { return texelFetch(hostDepth, ivec2(pixel + frame.viewportPx), 0).x; }
 
 // kUnusable beyond the extent and at background.
 float neighbourDepth(ivec2 pixel) {
-    if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(frame.extent.xy)))) return kUnusable;
+    if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, ivec2(frame.extentPx)))) return kUnusable;
     float d = hostDepthAt(uvec2(pixel));
     return isBackground(d) ? kUnusable : d;
 }
 
 // Metres of view depth per unit of device depth.
 float metresPerDevice(float d) {
-    vec4 m = frame.viewDepthFromDevice;
-    precise float w = m.z * d + m.w;
-    precise float metres = (m.x * m.w - m.y * m.z) / (w * w);
+    vec2 n = frame.viewDepthNumerator;
+    vec2 m = frame.viewDepthDenominator;
+    precise float w = m.x * d + m.y;
+    precise float metres = (n.x * m.y - n.y * m.x) / (w * w);
     return metres;
 }
 
@@ -76,7 +77,7 @@ float depthSlope(ivec2 pixel, ivec2 axis, float d, float rounding, float steep) 
 
 // Toward the camera. `viewDepth` and `rounding` belong to the pixel's depth d.
 vec3 faceNormalFromDepth(uvec2 pixel, float d, float viewDepth, float rounding) {
-    precise vec2 tangentPerSlope = metresPerDevice(d) / frame.viewXyFromPixel.xy;
+    precise vec2 tangentPerSlope = metresPerDevice(d) / frame.viewXyPerPixel;
     if (!isOrthographic()) tangentPerSlope /= viewDepth;
     precise vec2 steep = abs(kSteepest / tangentPerSlope);
     precise vec2 slope = vec2(depthSlope(ivec2(pixel), ivec2(1, 0), d, rounding, steep.x),
@@ -84,10 +85,10 @@ vec3 faceNormalFromDepth(uvec2 pixel, float d, float viewDepth, float rounding) 
     precise vec2 tangent = slope * tangentPerSlope;
     precise float toward = 1.0;
     if (!isOrthographic()) {
-        precise vec2 xy = (vec2(pixel) + 0.5) * frame.viewXyFromPixel.xy + frame.viewXyFromPixel.zw;
+        precise vec2 xy = (vec2(pixel) + 0.5) * frame.viewXyPerPixel + frame.viewXyAtPixel0;
         toward = 1.0 + (xy.x * tangent.x + xy.y * tangent.y);
     }
-    precise vec3 n = frame.axisXWs.xyz * tangent.x + (frame.axisYWs.xyz * tangent.y - frame.axisZWs.xyz * toward);
+    precise vec3 n = frame.axisXWs * tangent.x + (frame.axisYWs * tangent.y - frame.axisZWs * toward);
     precise float squared = n.x * n.x + (n.y * n.y + n.z * n.z);
     precise vec3 unit = n * inversesqrt(squared);
     return unit;

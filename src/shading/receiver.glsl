@@ -24,7 +24,7 @@ struct Receiver {
 
 // What the rounding of the host's depth makes of the position, across the face. A step aside along the face is no harm.
 float offPlaneMetres(float d, float rounding, Receiver r) {
-    precise vec3 ray = isOrthographic() ? frame.axisZWs.xyz : (r.positionWs - frame.eyeWs.xyz) / r.viewDepth;
+    precise vec3 ray = isOrthographic() ? frame.axisZWs : (r.positionWs - frame.eyeWs) / r.viewDepth;
     precise float metres = abs(metresPerDevice(d) * dot(r.faceNormalWs, ray)) * rounding;
     return metres;
 }
@@ -38,24 +38,24 @@ Receiver receiverAt(uvec2 pixel) {
     r.pixel = pixel;
     r.mask = 0xFFu;
     r.subsurface = false;
-    r.valid = all(lessThan(pixel, frame.extent.xy));
+    r.valid = all(lessThan(pixel, frame.extentPx));
     if (!r.valid) return r;
     float d = hostDepthAt(pixel);
     r.valid = !isBackground(d);
     if (!r.valid) return r;
     r.viewDepth = viewDepthOf(d);
     r.positionWs = worldFromPixel(vec2(pixel) + 0.5, r.viewDepth);
-    precise float rounding = kDeviceDepthRounding * d + frame.shadows.y;
-    ivec2 texel = ivec2(pixel + frame.extent.zw);
+    precise float rounding = kDeviceDepthRounding * d + frame.hostDepthStep;
+    ivec2 texel = ivec2(pixel + frame.viewportPx);
     if (!kNeedsFaceNormals) {
         r.faceNormalWs = vec3(0.0);
-    } else if ((frame.pools.w & kFrameFaceNormalsBit) != 0u) {
+    } else if ((frame.flags & kFrameFaceNormalsBit) != 0u) {
         r.faceNormalWs = decodeOctahedral(texelFetch(hostFaceNormals, texel, 0).xy);
     } else {
         r.faceNormalWs = faceNormalFromDepth(pixel, d, r.viewDepth, rounding);
     }
     r.offPlaneMetres = offPlaneMetres(d, rounding, r);
-    if ((frame.pools.w & kFrameReceiverFlagsBit) != 0u) {
+    if ((frame.flags & kFrameReceiverFlagsBit) != 0u) {
         uvec2 flags = texelFetch(hostReceiverFlags, texel, 0).xy;
         r.mask = flags.x;
         r.subsurface = (flags.y & kReceiverSubsurfaceBit) != 0u;

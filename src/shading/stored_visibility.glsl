@@ -4,7 +4,7 @@
 
 #include "gpu_interface/packing.h"
 
-layout(constant_id = 7) const uint kVisibilityBits = kMaxVisibilityBits;
+layout(constant_id = kSpecVisibilityBits) const uint kVisibilityBits = kMaxVisibilityBits;
 // visibilityLevels() and visibilitySlotWords() of packing.h, as constants.
 const uint kVisibilityLevels = (1u << kVisibilityBits) - 1u;
 const uint kVisibilitySlotWords = kWorkGroupSize * kVisibilityBits / 32u;

@@ -10,7 +10,7 @@
 #include "gpu_interface/packing.h"
 
 layout(local_size_x = 64, local_size_y = 1, local_size_z = 1) in;
-layout(constant_id = 0) const uint kSubgroupSize = 32;
+layout(constant_id = kSpecSubgroupSize) const uint kSubgroupSize = 32;
 const uint kSubgroupCount = kWorkGroupSize / kSubgroupSize;
 
 // Pipelines ask for full subgroups of kSubgroupSize lanes, so this numbers the 64 lanes whatever the device's order.

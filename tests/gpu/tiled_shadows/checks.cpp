@@ -30,8 +30,8 @@ ShadowInput shadowInputOf(const FrameInput& input, const FrameResult& result) {
     out.filter = filterOf(setup.filter);
     out.pcfRadius = static_cast<int>(setup.pcfRadius);
     out.pcssTaps = {static_cast<int>(setup.pcss.searchTaps), static_cast<int>(setup.pcss.filterTaps)};
-    out.patternTurn = input.patternPerFrame ? result.constants.random.x * 2654435769u : 0u;
-    EXPECT_EQ(result.constants.random.y, out.patternTurn);
+    out.patternTurn = input.patternPerFrame ? result.constants.frameNumber * 2654435769u : 0u;
+    EXPECT_EQ(result.constants.patternTurn, out.patternTurn);
     out.visibilityBits = setup.visibilityBits;
     out.bias = setup.depthBias == DepthBias::Oriented           ? BiasMode::Oriented
                : setup.depthBias == DepthBias::OrientedConstant ? BiasMode::OrientedConstant
@@ -53,7 +53,8 @@ std::vector<bool> ownedEntries(const FrameResult& r) {
     for (std::size_t tile = 0; tile < r.slotIds.size(); ++tile) {
         if (r.slotIds[tile] == gpu::kNoListSpace) continue;
         const std::uint32_t count = gpu::roundUpToEarlyWord(r.earlyCounts[tile] & gpu::kEarlyCountMask);
-        for (std::uint32_t i = 0; i < count && r.slotIds[tile] + i < owned.size(); ++i) owned[r.slotIds[tile] + i] = true;
+        for (std::uint32_t i = 0; i < count && r.slotIds[tile] + i < owned.size(); ++i)
+            owned[r.slotIds[tile] + i] = true;
     }
     return owned;
 }
@@ -72,8 +73,7 @@ void checkCanaries(const FrameResult& r, bool shadows) {
         early += i % gpu::kEarlyIndicesPerWord == 0 && word < r.earlyList.size() && r.earlyList[word] != kCanary;
     }
     const std::size_t used = shadows ? std::min(r.counters.visibilitySlots, r.slotCapacity) : 0;
-    for (std::size_t i = used * r.slotWords(); i < r.visibility.size(); ++i)
-        slots += r.visibility[i] != kCanary;
+    for (std::size_t i = used * r.slotWords(); i < r.visibility.size(); ++i) slots += r.visibility[i] != kCanary;
     EXPECT_EQ(early, 0u) << "words of the early list that no tile owns were written";
     EXPECT_EQ(final, 0u) << "words of the final list that no tile owns were written";
     EXPECT_EQ(slots, 0u) << "words of visibility slots that nobody took were written";
@@ -181,8 +181,7 @@ Checked checkFrame(const FrameInput& input, const FrameResult& result, const Che
     expectNone(checkGpuLights(all, camera, result.lights), "lights");
     out.lights = orderLights(all, result.lights);
     if (options.depths) expectNone(checkTileDepths(out.grid, result.depthRanges), "hierarchical depth");
-    out.expected =
-        findLights(out.grid, out.lights, input.dropLightsFacedAway && result.setup.facedAwayIsDark);
+    out.expected = findLights(out.grid, out.lights, input.dropLightsFacedAway && result.setup.facedAwayIsDark);
     const ListBuffers lists = result.lists();
     out.approximate = checkApproximate(out.grid, out.expected, out.lights.size(), result.groupMasks, lists);
     expectNone(out.approximate.findings, "find lights approximate");
@@ -198,8 +197,8 @@ Checked checkFrame(const FrameInput& input, const FrameResult& result, const Che
     if (options.shadows) {
         expectNone(checkEvaluateTiles(lists, result.evaluateTiles), "tiles to evaluate");
         if (options.bytes) {
-            out.shadows = checkFinalLists(out.grid, out.lights, shadowInputOf(input, result), lists,
-                                          options.slotOverflow);
+            out.shadows =
+                checkFinalLists(out.grid, out.lights, shadowInputOf(input, result), lists, options.slotOverflow);
             expectNone(out.shadows.findings, "generate shadows");
         }
     }

@@ -13,10 +13,10 @@ using renderer::ImageDesc;
 constexpr std::uint32_t kExtraX = 24, kExtraY = 16;  // pixels of the images beyond the view
 constexpr Access kAll{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
 constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-constexpr const char* kDeviceBuffers[] = {
-    "tile_group_light_masks", "tile_depth_ranges", "tile_light_slot_ids", "approximate_counts",
-    "early_light_list",       "early_counts",      "final_light_list",    "final_counts",
-    "visibility",             "evaluate_tiles",    "counters",            "shadow_bounds"};
+constexpr const char* kDeviceBuffers[] = {"tile_group_light_masks", "tile_depth_ranges", "tile_light_slot_ids",
+                                          "approximate_counts",     "early_light_list",  "early_counts",
+                                          "final_light_list",       "final_counts",      "visibility",
+                                          "evaluate_tiles",         "counters",          "shadow_bounds"};
 
 void barrier(VkCommandBuffer commands, Access before, Access after) {
     VkMemoryBarrier2 all{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
@@ -71,16 +71,15 @@ renderer::Buffer stage(const renderer::Device& device, const Placement& place, c
 
 void copyToImage(VkCommandBuffer commands, const renderer::Buffer& from, const GpuImage& image) {
     const ImageDesc& desc = image.desc();
-    VkImageMemoryBarrier2 change = renderer::imageBarrier(image, VK_IMAGE_LAYOUT_UNDEFINED, kAll,
-                                                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                                          renderer::access::kTransferWrite);
+    VkImageMemoryBarrier2 change = renderer::imageBarrier(
+        image, VK_IMAGE_LAYOUT_UNDEFINED, kAll, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, renderer::access::kTransferWrite);
     renderer::recordBarriers(commands, {&change, 1});
     VkBufferImageCopy copy{};
     copy.imageSubresource = {renderer::aspectOf(desc.format), 0, 0, desc.layers};
     copy.imageExtent = {desc.width, desc.height, 1};
     vkCmdCopyBufferToImage(commands, from.handle(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-    change = renderer::imageBarrier(image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, renderer::access::kTransferWrite, kRead,
-                                    renderer::access::kSampled);
+    change = renderer::imageBarrier(image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, renderer::access::kTransferWrite,
+                                    kRead, renderer::access::kSampled);
     renderer::recordBarriers(commands, {&change, 1});
 }
 
@@ -122,7 +121,9 @@ Rig::Rig(TestDevice& device, const ContextSetup& setup, const ViewDesc& desc)
     EXPECT_TRUE(made.ok()) << made.message();
 }
 
-Rig::~Rig() { device_.vulkan().waitIdle(); }
+Rig::~Rig() {
+    device_.vulkan().waitIdle();
+}
 
 void Rig::makeImages(const FrameInput& input) {
     const renderer::Device& device = device_.vulkan();
@@ -144,8 +145,8 @@ void Rig::makeImages(const FrameInput& input) {
     for (const reference::AtlasCopy& atlas : shadows_->atlases) {
         atlases_.push_back(
             makeImage(device, "atlas", VK_FORMAT_D32_SFLOAT, atlas.widthPx, atlas.heightPx, atlas.layers, true));
-        atlasDescs_.push_back({atlases_.back().view(), atlas.widthPx, atlas.heightPx, atlas.layers,
-                               static_cast<float>(atlas.depthStep)});
+        atlasDescs_.push_back(
+            {atlases_.back().view(), atlas.widthPx, atlas.heightPx, atlas.layers, static_cast<float>(atlas.depthStep)});
     }
 }
 
@@ -245,8 +246,8 @@ void Rig::recordReadback(VkCommandBuffer commands) {
     if (readback_.bytes() < total)
         readback_ = renderer::Buffer(device_.vulkan(), "readback", total, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                                      renderer::MemoryUse::Readback);
-    barrier(commands, kAll, {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                             VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT});
+    barrier(commands, kAll,
+            {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT});
     for (const Range& range : ranges_) {
         const VkBufferCopy copy{0, range.offset, range.bytes};
         vkCmdCopyBuffer(commands, view_->buffer(range.name.c_str()), readback_.handle(), 1, &copy);
@@ -276,9 +277,10 @@ void Rig::decode(FrameResult& r) const {
     }
     std::memcpy(&r.constants, contents("frame_constants").data(), sizeof(r.constants));
     std::memcpy(&r.counters, contents("counters").data(), sizeof(r.counters));
-    r.lights.resize(r.constants.lightCounts.x);
+    r.lights.resize(r.constants.lightCount);
     if (!r.lights.empty())
-        std::memcpy(static_cast<void*>(r.lights.data()), contents("lights").data(), r.lights.size() * sizeof(gpu::GpuLight));
+        std::memcpy(static_cast<void*>(r.lights.data()), contents("lights").data(),
+                    r.lights.size() * sizeof(gpu::GpuLight));
     const std::size_t tiles = std::size_t(r.tilesX()) * r.tilesY();
     const auto perTile = [&](const char* name, std::size_t words) {
         std::vector<std::uint32_t> all = contents(name);
@@ -289,8 +291,8 @@ void Rig::decode(FrameResult& r) const {
     const std::vector<std::uint32_t> ranges = perTile("tile_depth_ranges", 2 * tiles);
     r.depthRanges.resize(ranges.size());
     std::memcpy(r.depthRanges.data(), ranges.data(), ranges.size() * 4);
-    r.groupMasks = perTile("tile_group_light_masks",
-                           std::size_t(r.constants.tileCounts.z) * r.constants.tileCounts.w * gpu::kLightMaskEntryWords);
+    r.groupMasks = perTile("tile_group_light_masks", std::size_t(r.constants.tileGroupCounts.x) *
+                                                         r.constants.tileGroupCounts.y * gpu::kLightMaskEntryWords);
     r.slotIds = perTile("tile_light_slot_ids", tiles);
     r.approximateCounts = perTile("approximate_counts", tiles);
     r.earlyCounts = perTile("early_counts", tiles);

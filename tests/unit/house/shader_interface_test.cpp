@@ -28,18 +28,18 @@ constexpr std::uint32_t kListsSet = 0, kReceiversSet = 1, kShadowmapsSet = 2, kH
 
 template <typename T>
 MemberLayout memberAt(std::size_t offset) {
-    constexpr bool unsignedWords = std::is_same_v<T, uint> || std::is_same_v<T, uvec4>;
+    constexpr bool unsignedWords = std::is_same_v<T, uint> || std::is_same_v<T, uvec2>;
     return {offset, sizeof(T), unsignedWords ? 'u' : 'f'};
 }
 #define MEMBER(type, name) memberAt<decltype(type::name)>(offsetof(type, name))
 
 std::vector<MemberLayout> gpuLight() {
-    return {MEMBER(GpuLight, positionWs),   MEMBER(GpuLight, rangeMetres), MEMBER(GpuLight, directionWs),
-            MEMBER(GpuLight, cosOuter),     MEMBER(GpuLight, positionVs),  MEMBER(GpuLight, sinOuter),
-            MEMBER(GpuLight, directionVs),  MEMBER(GpuLight, sourceRadius), MEMBER(GpuLight, typeAndFlags),
-            MEMBER(GpuLight, lightMask),    MEMBER(GpuLight, shadowView),  MEMBER(GpuLight, hostIndex),
-            MEMBER(GpuLight, lightFade),    MEMBER(GpuLight, shadowFade),  MEMBER(GpuLight, biasMetres),
-            MEMBER(GpuLight, reserved)};
+    return {MEMBER(GpuLight, positionWs),        MEMBER(GpuLight, rangeMetres),  MEMBER(GpuLight, directionWs),
+            MEMBER(GpuLight, cosOuter),          MEMBER(GpuLight, positionVs),   MEMBER(GpuLight, sinOuter),
+            MEMBER(GpuLight, directionVs),       MEMBER(GpuLight, sourceRadius), MEMBER(GpuLight, typeAndFlags),
+            MEMBER(GpuLight, lightMask),         MEMBER(GpuLight, shadowView),   MEMBER(GpuLight, hostIndex),
+            MEMBER(GpuLight, lightFade),         MEMBER(GpuLight, shadowFade),   MEMBER(GpuLight, biasMetres),
+            MEMBER(GpuLight, shadowFadePerMetre)};
 }
 
 std::vector<MemberLayout> gpuShadowView() {
@@ -51,32 +51,71 @@ std::vector<MemberLayout> gpuShadowView() {
             MEMBER(GpuShadowView, atlasPerTexel),    MEMBER(GpuShadowView, boundsFirst),
             MEMBER(GpuShadowView, boundsRow),        MEMBER(GpuShadowView, boundsBlocks),
             MEMBER(GpuShadowView, reserved),         MEMBER(GpuShadowView, planeX),
-            MEMBER(GpuShadowView, planeY),           MEMBER(GpuShadowView, planeZ),
-            MEMBER(GpuShadowView, tangentPerNdc),    MEMBER(GpuShadowView, reserved2)};
+            MEMBER(GpuShadowView, depthStep),        MEMBER(GpuShadowView, planeY),
+            MEMBER(GpuShadowView, reserved1),        MEMBER(GpuShadowView, planeZ),
+            MEMBER(GpuShadowView, reserved2),        MEMBER(GpuShadowView, planeSlopePerPx),
+            MEMBER(GpuShadowView, tangentPerNdc)};
 }
 
 std::vector<MemberLayout> gpuShadowBoundsCell() {
-    return {MEMBER(GpuShadowBoundsCell, atlasAndLayer),  MEMBER(GpuShadowBoundsCell, cellX),
-            MEMBER(GpuShadowBoundsCell, cellY),          MEMBER(GpuShadowBoundsCell, first),
-            MEMBER(GpuShadowBoundsCell, row),            MEMBER(GpuShadowBoundsCell, blocks),
-            MEMBER(GpuShadowBoundsCell, atlasPerTexelX), MEMBER(GpuShadowBoundsCell, atlasPerTexelY)};
+    return {MEMBER(GpuShadowBoundsCell, atlasAndLayer),
+            MEMBER(GpuShadowBoundsCell, cellX),
+            MEMBER(GpuShadowBoundsCell, cellY),
+            MEMBER(GpuShadowBoundsCell, first),
+            MEMBER(GpuShadowBoundsCell, row),
+            MEMBER(GpuShadowBoundsCell, blocks),
+            MEMBER(GpuShadowBoundsCell, atlasPerTexelX),
+            MEMBER(GpuShadowBoundsCell, atlasPerTexelY)};
 }
 
 std::vector<MemberLayout> gpuFrame() {
-    return {MEMBER(GpuFrame, eyeWs),   MEMBER(GpuFrame, axisXWs),         MEMBER(GpuFrame, axisYWs),
-            MEMBER(GpuFrame, axisZWs), MEMBER(GpuFrame, viewXyFromPixel), MEMBER(GpuFrame, viewDepthFromDevice),
-            MEMBER(GpuFrame, zBins),   MEMBER(GpuFrame, extent),          MEMBER(GpuFrame, tileCounts),
-            MEMBER(GpuFrame, lightCounts), MEMBER(GpuFrame, pools),       MEMBER(GpuFrame, shadows),
-            MEMBER(GpuFrame, random)};
+    return {MEMBER(GpuFrame, eyeWs),
+            MEMBER(GpuFrame, backgroundDepth),
+            MEMBER(GpuFrame, axisXWs),
+            MEMBER(GpuFrame, zBinNearDepth),
+            MEMBER(GpuFrame, axisYWs),
+            MEMBER(GpuFrame, zBinsPerMetre),
+            MEMBER(GpuFrame, axisZWs),
+            MEMBER(GpuFrame, farthestReach),
+            MEMBER(GpuFrame, viewXyPerPixel),
+            MEMBER(GpuFrame, viewXyAtPixel0),
+            MEMBER(GpuFrame, viewDepthNumerator),
+            MEMBER(GpuFrame, viewDepthDenominator),
+            MEMBER(GpuFrame, extentPx),
+            MEMBER(GpuFrame, viewportPx),
+            MEMBER(GpuFrame, tileCounts),
+            MEMBER(GpuFrame, tileGroupCounts),
+            MEMBER(GpuFrame, lightCount),
+            MEMBER(GpuFrame, directionalLightCount),
+            MEMBER(GpuFrame, maskTileColumns),
+            MEMBER(GpuFrame, maskTileRows),
+            MEMBER(GpuFrame, listCapacity),
+            MEMBER(GpuFrame, slotCapacity),
+            MEMBER(GpuFrame, fixedListEntries),
+            MEMBER(GpuFrame, flags),
+            MEMBER(GpuFrame, subsurfaceBiasMetres),
+            MEMBER(GpuFrame, hostDepthStep),
+            MEMBER(GpuFrame, largestCoordinate),
+            MEMBER(GpuFrame, reserved),
+            MEMBER(GpuFrame, frameNumber),
+            MEMBER(GpuFrame, patternTurn),
+            MEMBER(GpuFrame, pcssSearchTaps),
+            MEMBER(GpuFrame, pcssFilterTaps)};
 }
 
 std::vector<MemberLayout> gpuCounters() {
-    return {MEMBER(GpuCounters, listEntries),         MEMBER(GpuCounters, visibilitySlots),
-            MEMBER(GpuCounters, listOverflowTiles),   MEMBER(GpuCounters, slotOverflowEntries),
-            MEMBER(GpuCounters, accurateExceedsApproximate), MEMBER(GpuCounters, tilesWithGeometry),
-            MEMBER(GpuCounters, approximateEntries),  MEMBER(GpuCounters, earlyEntries),
-            MEMBER(GpuCounters, earlyCastingEntries), MEMBER(GpuCounters, finalEntries),
-            MEMBER(GpuCounters, finalSlotEntries),    MEMBER(GpuCounters, maxLightsInTile)};
+    return {MEMBER(GpuCounters, listEntries),
+            MEMBER(GpuCounters, visibilitySlots),
+            MEMBER(GpuCounters, listOverflowTiles),
+            MEMBER(GpuCounters, slotOverflowEntries),
+            MEMBER(GpuCounters, accurateExceedsApproximate),
+            MEMBER(GpuCounters, tilesWithGeometry),
+            MEMBER(GpuCounters, approximateEntries),
+            MEMBER(GpuCounters, earlyEntries),
+            MEMBER(GpuCounters, earlyCastingEntries),
+            MEMBER(GpuCounters, finalEntries),
+            MEMBER(GpuCounters, finalSlotEntries),
+            MEMBER(GpuCounters, maxLightsInTile)};
 }
 
 std::vector<MemberLayout> gpuEvaluateHead() {
@@ -93,7 +132,9 @@ std::vector<MemberLayout> sceneConstants() {
     return {MEMBER(SceneConstants, skyRadiance), MEMBER(SceneConstants, groundRadiance)};
 }
 
-PartLayout structAt(std::size_t offset, std::vector<MemberLayout> members) { return {offset, 0, false, std::move(members)}; }
+PartLayout structAt(std::size_t offset, std::vector<MemberLayout> members) {
+    return {offset, 0, false, std::move(members)};
+}
 PartLayout arrayAt(std::size_t offset, std::size_t stride, std::vector<MemberLayout> members) {
     return {offset, stride, true, std::move(members)};
 }
@@ -122,8 +163,7 @@ const std::map<Key, std::vector<PartLayout>>& blocks() {
         {{kListsSet, kBindCounters}, {structAt(0, gpuCounters())}},
         {{kShadowmapsSet, kBindShadowViews}, {arrayAt(0, sizeof(GpuShadowView), gpuShadowView())}},
         {{kShadowmapsSet, kBindShadowBounds}, {arrayAt(0, 8, {memberAt<vec2>(0)})}},
-        {{kShadowmapsSet, kBindShadowBoundsCells},
-         {arrayAt(0, sizeof(GpuShadowBoundsCell), gpuShadowBoundsCell())}},
+        {{kShadowmapsSet, kBindShadowBoundsCells}, {arrayAt(0, sizeof(GpuShadowBoundsCell), gpuShadowBoundsCell())}},
         {{kHostSet, 5}, {arrayAt(0, sizeof(HostLight), hostLight())}},
         {{kHostSet, 6}, {structAt(0, sceneConstants())}},
     };
@@ -192,8 +232,9 @@ std::string differences(const std::vector<PartLayout>& shader, const std::vector
 TEST(ShaderInterface, AllShadersAreSeen) {
     std::vector<std::string> names;
     for (const ShaderLayout& shader : libraryAndLighting()) names.push_back(shader.name);
-    for (const char* name : {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "shadow_bounds",
-                             "generate_shadows", "gather_statistics", "lighting_deferred", "lighting_evaluate", "lighting_inline"}) {
+    for (const char* name :
+         {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "shadow_bounds", "generate_shadows",
+          "gather_statistics", "lighting_deferred", "lighting_evaluate", "lighting_inline"}) {
         EXPECT_NE(std::ranges::find(names, name), names.end()) << name;
     }
 }
@@ -235,9 +276,8 @@ TEST(ShaderInterface, TablesCoverTheStructures) {
 TEST(ShaderInterface, DifferencesAreTold) {
     const std::optional<ShaderLayout> shader = shaderNamed("generate_shadows");
     ASSERT_TRUE(shader);
-    const auto lights = std::ranges::find_if(shader->resources, [](const ResourceLayout& r) {
-        return r.set == kListsSet && r.binding == kBindLights;
-    });
+    const auto lights = std::ranges::find_if(
+        shader->resources, [](const ResourceLayout& r) { return r.set == kListsSet && r.binding == kBindLights; });
     ASSERT_NE(lights, shader->resources.end());
     const std::vector<PartLayout>& cpp = blocks().at({kListsSet, kBindLights});
     const auto planted = [&](const std::function<void(PartLayout&)>& change) {
@@ -290,7 +330,9 @@ TEST(ShaderInterface, SetsAreKnown) {
     }
 }
 
-Key placeOf(const ResourceLayout& r) { return {r.set, r.binding}; }
+Key placeOf(const ResourceLayout& r) {
+    return {r.set, r.binding};
+}
 
 std::size_t resourcesIn(const ShaderLayout& shader, std::uint32_t set) {
     return static_cast<std::size_t>(std::ranges::count(shader.resources, set, &ResourceLayout::set));
@@ -307,14 +349,16 @@ TEST(ShaderInterface, MainLightingSeesNoShadowmap) {
         ASSERT_TRUE(shader) << name;
         // All but the list of cells, which the shadow bounds' own pass reads alone.
         EXPECT_EQ(resourcesIn(*shader, kShadowmapsSet), kShadowmapsBindingCount - 1) << name;
-        EXPECT_EQ(std::ranges::count(shader->resources, Key{kShadowmapsSet, kBindShadowBoundsCells}, placeOf), 0) << name;
+        EXPECT_EQ(std::ranges::count(shader->resources, Key{kShadowmapsSet, kBindShadowBoundsCells}, placeOf), 0)
+            << name;
     }
     const std::optional<ShaderLayout> bounds = shaderNamed("shadow_bounds");
     ASSERT_TRUE(bounds);
     EXPECT_EQ(resourcesIn(*bounds, kListsSet), 0u);
     EXPECT_EQ(resourcesIn(*bounds, kReceiversSet), 0u);
     EXPECT_EQ(std::ranges::count(bounds->resources, Key{kShadowmapsSet, kBindShadowBoundsCells}, placeOf), 1);
-    for (const char* name : {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "gather_statistics"}) {
+    for (const char* name :
+         {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "gather_statistics"}) {
         const std::optional<ShaderLayout> shader = shaderNamed(name);
         ASSERT_TRUE(shader) << name;
         EXPECT_EQ(resourcesIn(*shader, kShadowmapsSet), 0u) << name;

@@ -10,7 +10,7 @@ Prepared runCamera(const Camera& camera, std::uint32_t width = 640, std::uint32_
     return runOnce(camera, width, height, {});
 }
 
-Point toPoint(const gpu::vec4& v) {
+Point toPoint(const gpu::vec3& v) {
     return {v.x, v.y, v.z};
 }
 
@@ -22,18 +22,18 @@ TEST(CameraConstants, PixelAndDepthLeadBackToTheWorld) {
         const Prepared prepared = runCamera(camera);
         ASSERT_TRUE(prepared.result.ok()) << prepared.result.message();
         const gpu::GpuFrame& f = prepared.frame;
-        EXPECT_EQ(f.pools.w, spec.orthographic ? gpu::kFrameOrthographicBit : 0u);
-        EXPECT_EQ(f.eyeWs.w, spec.reversed ? 0.0f : 1.0f);
+        EXPECT_EQ(f.flags, spec.orthographic ? gpu::kFrameOrthographicBit : 0u);
+        EXPECT_EQ(f.backgroundDepth, spec.reversed ? 0.0f : 1.0f);
         const double nearTolerance = 1e-5 * spec.nearMetres + (spec.orthographic ? 1e-6 * spec.farMetres : 0);
-        EXPECT_NEAR(f.zBins.x, spec.nearMetres, nearTolerance);
+        EXPECT_NEAR(f.zBinNearDepth, spec.nearMetres, nearTolerance);
         EXPECT_GT(dot(toPoint(f.axisZWs), unit(spec.forward)), 0.999999) << "the z axis points into the scene";
         for (int i = 0; i < 20; ++i) {
             const double depth =
                 spec.nearMetres + uniform(random, 0.01, 1) * std::min(spec.farMetres - spec.nearMetres, 30.0);
             const double xPx = uniform(random, 0, 640), yPx = uniform(random, 0, 360);
             const double scale = spec.orthographic ? 1 : depth;
-            const double u = xPx * f.viewXyFromPixel.x + f.viewXyFromPixel.z;
-            const double v = yPx * f.viewXyFromPixel.y + f.viewXyFromPixel.w;
+            const double u = xPx * f.viewXyPerPixel.x + f.viewXyAtPixel0.x;
+            const double v = yPx * f.viewXyPerPixel.y + f.viewXyAtPixel0.y;
             const Point world = toPoint(f.eyeWs) + toPoint(f.axisXWs) * (u * scale) + toPoint(f.axisYWs) * (v * scale) +
                                 toPoint(f.axisZWs) * depth;
             const Projected at = project(camera, world, 640, 360);
@@ -55,8 +55,8 @@ TEST(CameraConstants, DeviceDepthLeadsToViewDepth) {
                 spec.nearMetres = 0.5, spec.farMetres = 80;
                 const Prepared prepared = runCamera(makeCamera(spec));
                 ASSERT_TRUE(prepared.result.ok()) << prepared.result.message();
-                const gpu::vec4 m = prepared.frame.viewDepthFromDevice;
-                const auto viewDepth = [&](double d) { return (m.x * d + m.y) / (m.z * d + m.w); };
+                const gpu::vec2 n = prepared.frame.viewDepthNumerator, m = prepared.frame.viewDepthDenominator;
+                const auto viewDepth = [&](double d) { return (n.x * d + n.y) / (m.x * d + m.y); };
                 EXPECT_NEAR(viewDepth(reversed ? 1 : 0), 0.5, 1e-4);
                 EXPECT_NEAR(viewDepth(reversed ? 0 : 1), 80, 0.05);
                 EXPECT_GT(viewDepth(0.5), 0.5);
@@ -91,16 +91,16 @@ TEST(CameraConstants, CountsAndExtent) {
     const Prepared prepared = runPrepare(*prepare, input);
     ASSERT_TRUE(prepared.result.ok()) << prepared.result.message();
     const gpu::GpuFrame& f = prepared.frame;
-    EXPECT_EQ(f.extent.x, 1921u);
-    EXPECT_EQ(f.extent.y, 1081u);
-    EXPECT_EQ(f.extent.z, 7u);
-    EXPECT_EQ(f.extent.w, 9u);
+    EXPECT_EQ(f.extentPx.x, 1921u);
+    EXPECT_EQ(f.extentPx.y, 1081u);
+    EXPECT_EQ(f.viewportPx.x, 7u);
+    EXPECT_EQ(f.viewportPx.y, 9u);
     EXPECT_EQ(f.tileCounts.x, 241u);
     EXPECT_EQ(f.tileCounts.y, 136u);
-    EXPECT_EQ(f.tileCounts.z, 31u);
-    EXPECT_EQ(f.tileCounts.w, 17u);
-    EXPECT_EQ(f.lightCounts.z, 61u);
-    EXPECT_EQ(f.lightCounts.w, 34u);
+    EXPECT_EQ(f.tileGroupCounts.x, 31u);
+    EXPECT_EQ(f.tileGroupCounts.y, 17u);
+    EXPECT_EQ(f.maskTileColumns, 61u);
+    EXPECT_EQ(f.maskTileRows, 34u);
     EXPECT_EQ(prepared.masks.size(), 61u * 34u * 33u);
 }
 

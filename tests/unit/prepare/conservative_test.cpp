@@ -107,10 +107,11 @@ struct ShaderPixel {
 };
 
 ShaderPixel shaderPixel(const gpu::GpuFrame& f, float xPx, float yPx, float device) {
-    const gpu::vec4 &d = f.viewDepthFromDevice, &m = f.viewXyFromPixel;
-    const float depth = (d.x * device + d.y) / (d.z * device + d.w);
-    const float scale = (f.pools.w & gpu::kFrameOrthographicBit) != 0 ? 1.0f : depth;
-    const float x = (xPx * m.x + m.z) * scale, y = (yPx * m.y + m.w) * scale;
+    const gpu::vec2 &n = f.viewDepthNumerator, &d = f.viewDepthDenominator;
+    const float depth = (n.x * device + n.y) / (d.x * device + d.y);
+    const float scale = (f.flags & gpu::kFrameOrthographicBit) != 0 ? 1.0f : depth;
+    const float x = (xPx * f.viewXyPerPixel.x + f.viewXyAtPixel0.x) * scale;
+    const float y = (yPx * f.viewXyPerPixel.y + f.viewXyAtPixel0.y) * scale;
     return {depth,
             {f.eyeWs.x + (f.axisXWs.x * x + f.axisYWs.x * y + f.axisZWs.x * depth),
              f.eyeWs.y + (f.axisXWs.y * x + f.axisYWs.y * y + f.axisZWs.y * depth),
@@ -323,8 +324,8 @@ Tightness measureTightness(LightType type, bool orthographic, bool inFront) {
         EXPECT_TRUE(prepared.result.ok()) << prepared.result.message();
         for (std::uint32_t i = 0; i < prepared.lights.size(); ++i) {
             const Light& light = lights[prepared.lights[i].hostIndex];
-            for (std::uint32_t row = 0; row < prepared.frame.lightCounts.w; ++row) {
-                for (std::uint32_t column = 0; column < prepared.frame.lightCounts.z; ++column) {
+            for (std::uint32_t row = 0; row < prepared.frame.maskTileRows; ++row) {
+                for (std::uint32_t column = 0; column < prepared.frame.maskTileColumns; ++column) {
                     const bool reached = tileIsReached(spec, camera, light, column, row, 1920, 1080);
                     const bool set = prepared.maskHas(column, row, i);
                     sum.reached += reached ? 1 : 0;

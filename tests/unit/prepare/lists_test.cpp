@@ -38,10 +38,10 @@ TEST(Lists, NoLights) {
     const Prepared p = runLights({});
     ASSERT_TRUE(p.result.ok());
     EXPECT_EQ(p.report.visible, 0u);
-    EXPECT_EQ(p.frame.lightCounts.x, 0u);
+    EXPECT_EQ(p.frame.lightCount, 0u);
     EXPECT_TRUE(std::all_of(p.masks.begin(), p.masks.end(), [](std::uint32_t w) { return w == 0; }));
     EXPECT_TRUE(std::all_of(p.zBins.begin(), p.zBins.end(), [](std::uint32_t w) { return w == gpu::kZBinEmpty; }));
-    EXPECT_TRUE(std::isfinite(p.frame.zBins.y));
+    EXPECT_TRUE(std::isfinite(p.frame.zBinsPerMetre));
 }
 
 TEST(Lists, OneLight) {
@@ -66,9 +66,9 @@ TEST(Lists, OneLight) {
     EXPECT_EQ(g.lightFade, 1.0f);
     EXPECT_EQ(g.shadowFade, 1.0f);
     EXPECT_EQ(p.report.casting, 1u);
-    EXPECT_NEAR(p.frame.zBins.z, 13, 0.01);
-    EXPECT_GE(p.frame.zBins.z, 13.0f);
-    EXPECT_NEAR(p.frame.zBins.w, 13, 0.01);
+    EXPECT_NEAR(p.frame.farthestReach, 13, 0.01);
+    EXPECT_GE(p.frame.farthestReach, 13.0f);
+    EXPECT_NEAR(p.frame.largestCoordinate, 13, 0.01);
 }
 
 TEST(Lists, OneSpot) {
@@ -93,8 +93,8 @@ TEST(Lists, OnlyDirectional) {
     const Prepared p = runLights(lights);
     ASSERT_TRUE(p.result.ok()) << p.result.message();
     EXPECT_EQ(hostIndices(p), (std::vector<std::uint32_t>{0, 1, 2}));
-    EXPECT_EQ(p.frame.lightCounts.x, 3u);
-    EXPECT_EQ(p.frame.lightCounts.y, 3u);
+    EXPECT_EQ(p.frame.lightCount, 3u);
+    EXPECT_EQ(p.frame.directionalLightCount, 3u);
     EXPECT_EQ(p.report.directional, 3u);
     EXPECT_EQ(p.report.casting, 1u);
     EXPECT_EQ(p.lights[0].rangeMetres, 3.0e38f);
@@ -102,8 +102,7 @@ TEST(Lists, OnlyDirectional) {
     EXPECT_EQ(p.lights[0].shadowView, gpu::kNoShadowView);
     EXPECT_EQ(p.lights[0].typeAndFlags, gpu::kLightDirectional);
     EXPECT_EQ(p.lights[1].shadowView, 5u);
-    EXPECT_EQ(p.lights[1].typeAndFlags,
-              gpu::kLightDirectional | gpu::kLightCastsBit | 3u << gpu::kLightCascadesShift);
+    EXPECT_EQ(p.lights[1].typeAndFlags, gpu::kLightDirectional | gpu::kLightCastsBit | 3u << gpu::kLightCascadesShift);
     EXPECT_NEAR(p.lights[1].sourceRadius, std::tan(0.5), 1e-6);
     EXPECT_TRUE(std::all_of(p.masks.begin(), p.masks.end(), [](std::uint32_t w) { return w == 0; }));
     EXPECT_TRUE(std::all_of(p.zBins.begin(), p.zBins.end(), [](std::uint32_t w) { return w == gpu::kZBinEmpty; }));

@@ -211,7 +211,7 @@ struct Prepared {
 
     [[nodiscard]] const std::uint32_t* entry(std::uint32_t column, std::uint32_t row) const {
         return masks.data() +
-               (static_cast<std::size_t>(row) * frame.lightCounts.z + column) * gpu::kLightMaskEntryWords;
+               (static_cast<std::size_t>(row) * frame.maskTileColumns + column) * gpu::kLightMaskEntryWords;
     }
     [[nodiscard]] bool maskHas(std::uint32_t column, std::uint32_t row, std::uint32_t light) const {
         const std::uint32_t* words = entry(column, row);
@@ -219,7 +219,7 @@ struct Prepared {
     }
     // The shader's own arithmetic, in float.
     [[nodiscard]] std::uint32_t binOf(float viewDepth) const {
-        const float b = std::floor((viewDepth - frame.zBins.x) * frame.zBins.y);
+        const float b = std::floor((viewDepth - frame.zBinNearDepth) * frame.zBinsPerMetre);
         return static_cast<std::uint32_t>(std::clamp(static_cast<int>(std::clamp(b, -1e6f, 1e6f)), 0, 1023));
     }
 };

@@ -36,8 +36,6 @@ gpu::GpuLight toGpu(const LightModel& light, const CameraModel& camera) {
     out.cosOuter = light.type == LightType::Spot ? float(std::cos(light.outerAngle)) : -2.0f;
     out.sinOuter = light.type == LightType::Spot ? float(std::sin(light.outerAngle)) : 0.0f;
     out.positionVs.z = float(viewDepth(camera, light.position));
-    if (light.type == LightType::Directional)
-        out.positionVs = {float(light.shadowFadeScale), float(light.shadowFadeOffset), 0.0f};
     out.sourceRadius = float(light.sourceRadius);
     out.typeAndFlags = std::uint32_t(light.type) | (light.casts ? gpu::kLightCastsBit : 0u) |
                        (light.shadowFades ? gpu::kLightShadowFadesBit : 0u) |
@@ -47,6 +45,11 @@ gpu::GpuLight toGpu(const LightModel& light, const CameraModel& camera) {
     out.hostIndex = light.hostIndex;
     out.lightFade = float(light.lightFade);
     out.shadowFade = float(light.shadowFade);
+    if (light.type == LightType::Directional) {
+        out.positionVs = {};
+        out.shadowFadePerMetre = float(light.shadowFadeScale);
+        out.shadowFade = float(light.shadowFadeOffset);
+    }
     out.biasMetres = float(light.biasMetres);
     return out;
 }
@@ -90,7 +93,7 @@ TEST(Lights, GpuLightsAreCompared) {
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.sourceRadius *= 1.001f; }, kSun), 1u);  // the angle, not its tangent
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.typeAndFlags ^= 7u << gpu::kLightCascadesShift; }, kSun), 1u);
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.typeAndFlags ^= gpu::kLightShadowFadesBit; }, kSun), 1u);
-    EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.positionVs.y += 0.1f; }, kSun), 1u);
+    EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.shadowFadePerMetre += 0.1f; }, kSun), 1u);
     gpuLights[0] = gpuLights[1];
     EXPECT_EQ(checkGpuLights(all, camera, gpuLights).errors, 1u);
 }

@@ -27,7 +27,7 @@ CoverReport checkOneView(const CameraSetup& setup, Extent extent, const std::vec
     input.lights = host;
     input.shadowViewCount = 6;
     const PrepareSizes sizes = prepareSizes(widthPx, heightPx);
-    const auto words = [](std::size_t bytes) { return std::vector<gpu::uvec4>((bytes + 15) / 16); };
+    const auto words = [](std::size_t bytes) { return std::vector<gpu::vec4>((bytes + 15) / 16); };
     auto frameWords = words(sizes.frameConstants), lightWords = words(sizes.lights), binWords = words(sizes.zBins),
          maskWords = words(sizes.tileLightMasks);
     std::unique_ptr<Prepare> prepare;
@@ -40,7 +40,7 @@ CoverReport checkOneView(const CameraSetup& setup, Extent extent, const std::vec
 
     gpu::GpuFrame frame;
     std::memcpy(&frame, frameWords.data(), sizeof(frame));
-    std::vector<gpu::GpuLight> gpuLights(frame.lightCounts.x);
+    std::vector<gpu::GpuLight> gpuLights(frame.lightCount);
     std::memcpy(static_cast<void*>(gpuLights.data()), lightWords.data(), gpuLights.size() * sizeof(gpu::GpuLight));
     std::vector<std::uint32_t> bins(gpu::kZBinWords), masks(sizes.tileLightMasks / 4);
     std::memcpy(bins.data(), binWords.data(), bins.size() * 4);
@@ -54,9 +54,9 @@ CoverReport checkOneView(const CameraSetup& setup, Extent extent, const std::vec
     const VisibleReport visible = checkVisibleLights(all, lights, camera);
     EXPECT_TRUE(visible.findings.ok()) << visible.findings.text();
     EXPECT_EQ(report.visible, gpuLights.size());
-    const CoverReport zBins = checkZBins(lights, camera, bins, frame.zBins.x, frame.zBins.y);
+    const CoverReport zBins = checkZBins(lights, camera, bins, frame.zBinNearDepth, frame.zBinsPerMetre);
     EXPECT_TRUE(zBins.findings.ok()) << zBins.findings.text();
-    const CoverReport tiles = checkTileLightMasks(lights, camera, masks, frame.lightCounts.z, frame.lightCounts.w);
+    const CoverReport tiles = checkTileLightMasks(lights, camera, masks, frame.maskTileColumns, frame.maskTileRows);
     EXPECT_TRUE(tiles.findings.ok()) << tiles.findings.text();
     return tiles;
 }

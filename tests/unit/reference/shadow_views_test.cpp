@@ -52,13 +52,13 @@ TEST(ShadowViews, PlanesSlopeAsTheirPointsDo) {
         const Vec4 h = worldFromClip * Vec4{x * w, y * w, device * w, w};
         const Vec3 p = {h.x / h.w, h.y / h.w, h.z / h.w};
         const Vec3 n = normalize(Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
-        const auto coefficient = [&](const gpu::vec4& c) { return n.x * c.x + n.y * c.y + n.z * c.z; };
+        const auto coefficient = [&](const gpu::vec3& c) { return n.x * c.x + n.y * c.y + n.z * c.z; };
         const double mx = coefficient(view.planeX), my = coefficient(view.planeY), mz = coefficient(view.planeZ);
         const double k = model.orthographic ? mz : mx * x + my * y + mz;
         if (std::abs(k) < 0.2) continue;
         ++compared;
         const double inverseK = 1.0 / (model.orthographic ? k : k * z);
-        const double slopeX = mx * view.planeX.w * inverseK, slopeY = my * view.planeY.w * inverseK;
+        const double slopeX = mx * view.planeSlopePerPx.x * inverseK, slopeY = my * view.planeSlopePerPx.y * inverseK;
         const auto deviceAt = [&](Vec3 q, double& px, double& py) {
             const ShadowPosition at = project(model, q, 0.0);
             px = at.xPx, py = at.yPx;

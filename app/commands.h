@@ -15,5 +15,6 @@ void addVerifyCommand(CLI::App& app, Work& chosen);
 void addCompareCommand(CLI::App& app, Work& chosen);
 void addDevicesCommand(CLI::App& app, Work& chosen);
 void addScenesCommand(CLI::App& app, Work& chosen);
+void addSettingsCommand(CLI::App& app, Work& chosen);
 
 }  // namespace gnomon::app

@@ -3,39 +3,12 @@
 #include <span>
 
 #include "app/build_info.h"
+#include "app/frame_table.h"
+#include "app/settings_table.h"
 #include "picture/files.h"
 
 namespace gnomon::app {
 namespace {
-
-Json settingsOf(const Settings& s) {
-    return {{"camera", s.camera},
-            {"time", s.time},
-            {"animation", s.animation},
-            {"lights", s.lights},
-            {"lightDensity", s.lightDensity},
-            {"seed", s.seed},
-            {"filter", s.filter},
-            {"pcfRadius", s.pcfRadius},
-            {"pcssTaps", s.taps},
-            {"patternPerFrame", s.patternPerFrame},
-            {"visibilityBits", s.visibilityBits},
-            {"bias", s.bias},
-            {"hardwareBias", s.hardwareBias},
-            {"biasMetres", s.biasMetres},
-            {"subsurfaceFronts", s.subsurfaceFronts},
-            {"subsurfaceBiasMetres", s.subsurfaceBiasMetres},
-            {"faceNormals", s.faceNormals},
-            {"shadowBounds", !s.noShadowBounds && s.filter == "pcss"},
-            {"listEntries", s.listEntries},
-            {"visibilitySlots", s.visibilitySlots},
-            {"reservation", s.reservation},
-            {"subgroupSize", s.subgroupSize},
-            {"depth", s.depth},
-            {"atlas", s.atlas},
-            {"unquantised", s.unquantised},
-            {"validate", s.validate}};
-}
 
 Json lightsOf(const PrepareReport& lights) {
     return {{"given", lights.given},
@@ -45,10 +18,14 @@ Json lightsOf(const PrepareReport& lights) {
             {"casting", lights.casting}};
 }
 
-Json passesOf(const std::vector<renderer::PassTime>& passes) {
+Json passesOf(const std::vector<TimelineRow>& passes) {
     Json out = Json::array();
-    for (const renderer::PassTime& pass : passes)
-        out.push_back({{"name", pass.name}, {"drawing", pass.drawing}, {"ms", pass.milliseconds}});
+    for (const TimelineRow& pass : passes)
+        out.push_back({{"name", pass.name},
+                       {"phase", phaseName(pass.phase)},
+                       {"drawing", pass.kind == RowKind::Drawing},
+                       {"ms", pass.milliseconds()},
+                       {"beginMs", pass.beginMilliseconds}});
     return out;
 }
 
@@ -69,8 +46,8 @@ Json describe(const Session& session) {
             {"driver", info.driver},
             {"scene", session.settings().scene},
             {"triangles", renderer::triangleCount(session.scene())},
-            {"extent", {session.rendererDesc().widthPx, session.rendererDesc().heightPx}},
-            {"settings", settingsOf(session.settings())}};
+            {"extent", {session.rendererDesc().frame.widthPx, session.rendererDesc().frame.heightPx}},
+            {"settings", valuesOf(session.settings())}};
 }
 
 Json countersOf(const FrameResult& result) {

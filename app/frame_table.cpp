@@ -13,8 +13,8 @@ void printPasses(const renderer::FrameReport& report) {
         return;
     }
     fmt::print("\n{:<28} {:<8} {:>10}\n", "Pass", "kind", "ms");
-    for (const renderer::PassTime& pass : report.passes)
-        fmt::print("{:<28} {:<8} {:>10.3f}\n", pass.name, pass.drawing ? "drawing" : "compute", pass.milliseconds);
+    for (const TimelineRow& pass : report.passes)
+        fmt::print("{:<28} {:<8} {:>10.3f}\n", pass.name, kindName(pass.kind), pass.milliseconds());
     const Totals totals = totalsOf(report.passes);
     fmt::print("{:<28} {:<8} {:>10.3f}\n", "all drawing", "", totals.drawing);
     fmt::print("{:<28} {:<8} {:>10.3f}\n", "all compute (no statistics)", "", totals.compute);
@@ -40,10 +40,10 @@ void printCounters(const FrameResult& result) {
                s.lights.visible, s.lights.casting, s.lights.directional, s.lights.dropped);
     fmt::print("Lights per tile with geometry: {:.2f}, shadowed {:.2f}; most in a tile {}.\n",
                meanPerTile(s.earlyEntries, s), meanPerTile(s.earlyCastingEntries, s), s.maxLightsInTile);
-    fmt::print("List entries: {} of {}; tiles without space: {}.\n", s.listEntries, result.library.listEntries,
+    fmt::print("List entries: {} of {}; tiles without space: {}.\n", s.listEntries, s.listCapacity,
                s.listOverflowTiles);
-    fmt::print("Visibility slots: {} of {}; entries without one: {}.\n", s.visibilitySlots,
-               result.library.visibilitySlots, s.slotOverflowEntries);
+    fmt::print("Visibility slots: {} of {}; entries without one: {}.\n", s.visibilitySlots, s.slotCapacity,
+               s.slotOverflowEntries);
     fmt::print("Tiles shaded with shadowmaps: {}. Tiles where accurate exceeds approximate: {}.\n", s.evaluateTiles,
                s.accurateExceedsApproximate);
     fmt::print(
@@ -70,14 +70,49 @@ void printAdvice(const FrameResult& result) {
 
 }  // namespace
 
-bool isStatisticsPass(const renderer::PassTime& pass) {
-    return pass.name == "gather_statistics";
+const char* phaseName(Phase phase) {
+    switch (phase) {
+        case Phase::Host:
+            return "host";
+        case Phase::HierarchicalDepth:
+            return "hierarchical depth";
+        case Phase::FindLightsApproximate:
+            return "find lights approximate";
+        case Phase::FindLightsAccurate:
+            return "find lights accurate";
+        case Phase::ShadowBounds:
+            return "shadow bounds";
+        case Phase::GenerateShadows:
+            return "generate shadows";
+        case Phase::Closeups:
+            return "closeups";
+        case Phase::Lighting:
+            return "lighting";
+        case Phase::Statistics:
+            return "statistics";
+    }
+    return "";
 }
 
-Totals totalsOf(const std::vector<renderer::PassTime>& passes) {
+const char* kindName(RowKind kind) {
+    switch (kind) {
+        case RowKind::Compute:
+            return "compute";
+        case RowKind::Drawing:
+            return "drawing";
+        case RowKind::Transfer:
+            return "transfer";
+    }
+    return "";
+}
+
+Totals totalsOf(const std::vector<TimelineRow>& passes) {
     Totals totals;
-    for (const renderer::PassTime& pass : passes)
-        if (!isStatisticsPass(pass)) (pass.drawing ? totals.drawing : totals.compute) += pass.milliseconds;
+    for (const TimelineRow& pass : passes) {
+        if (pass.phase == Phase::Statistics) continue;
+        (pass.kind == RowKind::Drawing ? totals.drawing : totals.compute) += pass.milliseconds();
+        if (pass.phase == Phase::Lighting) totals.lighting += pass.milliseconds();
+    }
     return totals;
 }
 
@@ -87,7 +122,7 @@ double meanPerTile(std::uint32_t entries, const FrameStatistics& statistics) {
 
 void printFrame(const Session& session, const FrameResult& result) {
     const Settings& settings = session.settings();
-    const renderer::RendererDesc& desc = session.rendererDesc();
+    const renderer::FrameSettings& desc = session.rendererDesc().frame;
     fmt::print("{}, {}x{}, shadows {} ({}), {}\n", settings.scene, desc.widthPx, desc.heightPx, result.shadows,
                settings.filter, session.device().info().name);
     printPasses(result.report);

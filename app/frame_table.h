@@ -18,9 +18,11 @@ struct FrameResult {
 /// GPU milliseconds of one frame. The pass that only gathers statistics stands in no sum.
 struct Totals {
     double drawing = 0.0, compute = 0.0;
+    double lighting = 0.0;  // of compute
 };
-bool isStatisticsPass(const renderer::PassTime& pass);
-Totals totalsOf(const std::vector<renderer::PassTime>& passes);
+Totals totalsOf(const std::vector<TimelineRow>& passes);
+const char* phaseName(Phase phase);
+const char* kindName(RowKind kind);
 
 /// Mean over the tiles that show geometry; 0 without any.
 double meanPerTile(std::uint32_t entries, const FrameStatistics& statistics);

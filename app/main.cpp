@@ -37,6 +37,15 @@ int parseAndWork(int argc, char** argv) {
     addCompareCommand(app, work);
     addDevicesCommand(app, work);
     addScenesCommand(app, work);
+    addSettingsCommand(app, work);
+    for (const auto& [name, group] : {std::pair{"render", "Pictures"},
+                                      {"compare", "Pictures"},
+                                      {"bench", "Measurements"},
+                                      {"verify", "Measurements"},
+                                      {"devices", "What there is"},
+                                      {"scenes", "What there is"},
+                                      {"settings", "What there is"}})
+        app.get_subcommand(name)->group(group);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -115,7 +115,6 @@ int render(const RenderOptions& options) {
 void addRenderCommand(CLI::App& app, Work& chosen) {
     CLI::App* command = app.add_subcommand("render", "Render a scene into a picture");
     const auto options = std::make_shared<RenderOptions>();
-    addSettings(*command, options->settings);
     command->add_option("-o,--output", options->png, "The picture, a PNG file")->check(fileName());
     command->add_option("--exr", options->exr, "The linear picture, an EXR file")->check(fileName());
     command->add_option("--stats", options->statistics, "Times, memory and counters, a JSON file")->check(fileName());
@@ -130,6 +129,7 @@ void addRenderCommand(CLI::App& app, Work& chosen) {
         ->capture_default_str();
     command->add_flag("--sequence", options->sequence, "Write every frame, as NAME_0000.png and so on");
     command->add_option("--exposure", options->exposure, "EV100; without it the scene's own, or from the picture");
+    addSettings(*command, options->settings);
     command->callback([&chosen, options] { chosen = [options] { return render(*options); }; });
 }
 

@@ -34,7 +34,7 @@ const renderer::DeviceInfo& fitting(const renderer::DeviceInfo& info, const rend
     const VkPhysicalDeviceLimits& limits = info.properties.limits;
     const std::uint32_t most =
         std::min({limits.maxImageDimension2D, limits.maxFramebufferWidth, limits.maxFramebufferHeight});
-    if (std::max({desc.widthPx, desc.heightPx, desc.atlasSizePx}) > most)
+    if (std::max({desc.frame.widthPx, desc.frame.heightPx, desc.atlasSizePx}) > most)
         throw UsageError(fmt::format("'{}' draws pictures of at most {} pixels across.", info.name, most));
     if (desc.subgroupSize != 0 &&
         (desc.subgroupSize < info.minSubgroupSize || desc.subgroupSize > info.maxSubgroupSize))
@@ -81,7 +81,7 @@ Scene loadScene(const Settings& settings, const renderer::RendererDesc& desc) {
     renderer::TileDensity density;
     if (settings.lightDensity > 0.0f) {
         if (settings.lights == 0) throw UsageError("--light-density needs at least one light: give --lights.");
-        density = {settings.lightDensity, cameraOf(settings, scene), desc.widthPx, desc.heightPx};
+        density = {settings.lightDensity, cameraOf(settings, scene), desc.frame.widthPx, desc.frame.heightPx};
         renderer::scatterLights(scene, settings.lights, settings.seed, &density);
     } else if (settings.lights != 0 && settings.scene != "columns") {
         // The columns have places of their own for their lights.

@@ -9,13 +9,12 @@
 #include <string_view>
 
 #include "app/errors.h"
-#include "app/progress.h"
 #include "gpu_interface/numbers.h"
 
 namespace gnomon::app {
 namespace {
 
-constexpr std::uint32_t kMostPoolEntries = 1u << 30;
+constexpr std::uint32_t kFixedListEntriesPerTile = 32;
 // The paper's footnote 3.
 constexpr renderer::HardwareBias kPaperBias = {.slopeFactor = 1.0f};
 // With 32-bit reversed Z about 0.04 % of the distance to the light, and twice the triangle's slope.
@@ -93,138 +92,94 @@ CLI::Validator numberWithin(double low, double high) {
             range};
 }
 
-namespace {
-
-void addBiasSettings(CLI::App& command, Settings& s) {
-    command
-        .add_option(
-            "--bias", s.bias,
-            "Depth bias: oriented; oriented-constant (one depth for all texels, maps drawn with slope factor 1); paper "
-            "(that, and faces that look away ask the map, too: its listing 7); hardware (maps drawn "
-            "with factors 4096 and 2); hardware-no-normals (and faces that look away ask the map too); none")
-        ->check(CLI::IsMember(biasNames()))
-        ->capture_default_str();
-    command
-        .add_option("--hardware-bias", s.hardwareBias,
-                    "CONSTANT,SLOPE[,CLAMP] to draw shadowmaps with, in place of what --bias has")
-        ->check([](const std::string& text) { return text.empty() ? "'' is no hardware bias" : std::string(); });
-    command.add_option("--bias-metres", s.biasMetres, "Oriented bias of lights that state none")
-        ->check(numberWithin(0.0, 1000.0))
-        ->capture_default_str();
-    command.add_flag("--subsurface-fronts", s.subsurfaceFronts,
-                     "Draw subsurface casters with the faces that look at the light, and bias subsurface pixels by "
-                     "--subsurface-bias");
-    command.add_option("--subsurface-bias", s.subsurfaceBiasMetres, "Metres, with --subsurface-fronts")
-        ->check(numberWithin(0.0, 1000.0))
-        ->needs("--subsurface-fronts")
-        ->capture_default_str();
-    command.add_option("--face-normals", s.faceNormals, "From the G-buffer, or derived from its depth")
-        ->check(CLI::IsMember({"stored", "derived"}))
-        ->capture_default_str();
-}
-
-}  // namespace
-
-void addSettings(CLI::App& command, Settings& s) {
-    command.add_option("scene", s.scene, "A built-in scene or a .gltf or .glb file")->capture_default_str();
-    command.add_option("--size", s.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
-    command.add_option("--camera", s.camera, "A camera's name, #index, or eye:target[:degrees] as in 0,3,8:0,1,0:60")
-        ->capture_default_str();
-    command.add_option("--time", s.time, "Seconds into the scene's animations, of the first frame")
-        ->check(numberWithin(-1e9, 1e9))
-        ->capture_default_str();
-    command.add_option("--animation", s.animation, "The animation to play: its name, #index, default or none")
-        ->capture_default_str();
-    command.add_option("--lights", s.lights, "Scatter so many shadowed lights over the scene")
-        ->check(CLI::Range(0u, kMostLights));
-    command
-        .add_option(
-            "--light-density", s.lightDensity,
-            "Shadowed lights per tile, in the mean, that --lights shall give in this picture; they take the place "
-            "of the scene's own point and spot lights")
-        ->check(numberWithin(0.1, 64.0))
-        ->needs("--lights");
-    command.add_option("--seed", s.seed, "Of scattered lights, and of what verify chooses by chance")
-        ->check(CLI::Range(std::int64_t{0}, std::int64_t{0xFFFFFFFF}))
-        ->capture_default_str();
-    command.add_option("--filter", s.filter, "Shadow filter")
-        ->check(CLI::IsMember({"hard", "pcf", "pcss"}))
-        ->capture_default_str();
-    command.add_option("--pcf-radius", s.pcfRadius, "Texels")->check(CLI::Range(1, 3))->capture_default_str();
-    command
-        .add_option("--pcss-taps", s.taps,
-                    "low, medium, high, or SEARCH,FILTER: taps of the search and of the filter, as in 16,24")
-        ->capture_default_str();
-    command.add_flag("--pattern-per-frame", s.patternPerFrame, "Turn the sample pattern of pcss from frame to frame");
-    command.add_flag("--no-shadow-bounds", s.noShadowBounds,
-                     "pcss searches everywhere, also where the bounds of the shadowmaps tell the result");
-    command.add_option("--visibility-bits", s.visibilityBits, "Bits of a pixel's visibility in a slot")
-        ->check(CLI::IsMember({4, 8}))
-        ->capture_default_str();
-    addBiasSettings(command, s);
-    command.add_option("--device", s.device, "Index or part of the name of a Vulkan device (see: gnomon devices)");
-    command.add_flag("--validate", s.validate, "Run under the validation layers; any message is a failure");
-    command.add_flag_callback("--quiet", silenceProgress, "No progress on stderr");
-    command.add_option("--list-entries", s.listEntries, "Capacity of the light lists; 0: 8 per tile")
-        ->check(CLI::Range(0u, kMostPoolEntries));
-    command.add_option("--visibility-slots", s.visibilitySlots, "Capacity of the visibility slots; 0: 8 per tile")
-        ->check(CLI::Range(0u, kMostPoolEntries));
-    command.add_option("--reservation", s.reservation, "How space in the light lists is given out")
-        ->check(CLI::IsMember({"approximate", "accurate", "fixed"}))
-        ->capture_default_str();
-    command.add_option("--subgroup-size", s.subgroupSize, "Lanes; 0: the device's own choice")
-        ->check(CLI::IsMember({0, 4, 8, 16, 32, 64}));
-    command.add_option("--depth", s.depth, "Depth buffer of the camera")
-        ->check(CLI::IsMember({"reversed", "standard"}))
-        ->capture_default_str();
-    command.add_option("--atlas", s.atlas, "Shadow atlas, pixels across; 0: by resolution")
-        ->check(CLI::IsMember({0, 256, 512, 1024, 2048, 4096, 8192, 16384}));
-    command.add_flag("--unquantised", s.unquantised, "Inline shadows without the 8 bits of a visibility slot");
-}
-
 const std::vector<std::string>& biasNames() {
     static const std::vector<std::string> names = {"oriented", "oriented-constant",   "paper",
                                                    "hardware", "hardware-no-normals", "none"};
     return names;
 }
 
-void setBias(const std::string& name, renderer::RendererDesc& desc) {
+void setBias(const std::string& name, renderer::FrameSettings& settings) {
     if (std::ranges::find(biasNames(), name) == biasNames().end())
         throw UsageError(fmt::format("There is no depth bias '{}': choose {}.", name, fmt::join(biasNames(), ", ")));
     const bool constant = name == "oriented-constant" || name == "paper";
-    desc.depthBias = name == "oriented" ? DepthBias::Oriented
-                     : constant         ? DepthBias::OrientedConstant
-                                        : DepthBias::Unbiased;
-    desc.facedAwayIsDark = name != "paper" && name != "hardware-no-normals";
-    desc.shadowDrawing.bias = constant                       ? kPaperBias
-                              : name.starts_with("hardware") ? kTypicalHardwareBias
-                                                             : renderer::HardwareBias{};
+    settings.shadows.depthBias = name == "oriented" ? DepthBias::Oriented
+                                 : constant         ? DepthBias::OrientedConstant
+                                                    : DepthBias::Unbiased;
+    settings.shadows.facedAwayIsDark = name != "paper" && name != "hardware-no-normals";
+    settings.drawing.bias = constant                       ? kPaperBias
+                            : name.starts_with("hardware") ? kTypicalHardwareBias
+                                                           : renderer::HardwareBias{};
 }
+
+std::vector<Filter> filtersOf(const std::string& text) {
+    std::vector<Filter> filters;
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t comma = std::min(text.find(',', at), text.size());
+        const std::string name = text.substr(at, comma - at);
+        at = comma + 1;
+        if (name != "hard" && name != "pcf" && name != "pcss")
+            throw UsageError(
+                fmt::format("There is no shadow filter '{}': choose hard, pcf or pcss, or several as in "
+                            "hard,pcss.",
+                            name));
+        filters.push_back(name == "hard" ? Filter::Hard : name == "pcf" ? Filter::Pcf : Filter::Pcss);
+    }
+    return filters;
+}
+
+bool allSoft(const std::vector<Filter>& filters) {
+    return std::ranges::all_of(filters, [](Filter filter) { return filter == Filter::Pcss; });
+}
+
+namespace {
+
+// Presets parted by slashes.
+void parsePresets(const std::string& text, ShadowSettings& shadows) {
+    shadows.pcssPresetCount = 0;
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t slash = std::min(text.find('/', at), text.size());
+        if (shadows.pcssPresetCount == kMaxPcssPresets)
+            throw UsageError(fmt::format("--pcss-taps has more than {} presets.", kMaxPcssPresets));
+        shadows.pcssPresets[shadows.pcssPresetCount++] = parseTaps(text.substr(at, slash - at));
+        at = slash + 1;
+    }
+}
+
+renderer::FrameSettings frameSettingsOf(const Settings& s) {
+    renderer::FrameSettings f;
+    parseSize(s.size, f.widthPx, f.heightPx);
+    f.filters = filtersOf(s.filter);
+    f.shadows.pcfRadius = s.pcfRadius;
+    parsePresets(s.taps, f.shadows);
+    f.shadows.patternPerFrame = s.patternPerFrame;
+    f.shadows.visibilityBits = s.visibilityBits;
+    f.shadows.shadowBounds = !s.noShadowBounds;
+    f.shadows.listReservation = s.reservation == "accurate" ? ListReservation::Accurate
+                                : s.reservation == "fixed"  ? ListReservation::Fixed
+                                                            : ListReservation::Approximate;
+    f.shadows.fixedListEntriesPerTile = s.reservation == "fixed" ? kFixedListEntriesPerTile : 0;
+    setBias(s.bias, f);
+    if (!s.hardwareBias.empty()) f.drawing.bias = parseHardwareBias(s.hardwareBias);
+    f.drawing.subsurfaceFronts = s.subsurfaceFronts;
+    f.biasMetres = s.biasMetres;
+    f.subsurfaceBiasMetres = s.subsurfaceBiasMetres;
+    f.readFaceNormals = s.faceNormals == "stored";
+    f.deviceDepth = s.depth == "standard" ? DeviceDepth::StandardZ : DeviceDepth::ReversedZ;
+    f.inlineVariant.quantises = !s.unquantised;
+    return f;
+}
+
+}  // namespace
 
 renderer::RendererDesc rendererDescOf(const Settings& s) {
     renderer::RendererDesc desc;
-    parseSize(s.size, desc.widthPx, desc.heightPx);
-    desc.filter = s.filter == "hard" ? Filter::Hard : s.filter == "pcf" ? Filter::Pcf : Filter::Pcss;
-    desc.pcfRadius = s.pcfRadius;
-    desc.pcss = parseTaps(s.taps);
-    desc.patternPerFrame = s.patternPerFrame;
-    desc.visibilityBits = s.visibilityBits;
-    desc.shadowBounds = !s.noShadowBounds && desc.filter == Filter::Pcss;
-    setBias(s.bias, desc);
-    if (!s.hardwareBias.empty()) desc.shadowDrawing.bias = parseHardwareBias(s.hardwareBias);
-    desc.shadowDrawing.subsurfaceFronts = s.subsurfaceFronts;
-    desc.biasMetres = s.biasMetres;
-    desc.subsurfaceBiasMetres = s.subsurfaceBiasMetres;
-    desc.readFaceNormals = s.faceNormals == "stored";
-    desc.listReservation = s.reservation == "accurate" ? ListReservation::Accurate
-                           : s.reservation == "fixed"  ? ListReservation::Fixed
-                                                       : ListReservation::Approximate;
+    desc.frame = frameSettingsOf(s);
     desc.subgroupSize = s.subgroupSize;
     desc.listEntries = s.listEntries;
     desc.visibilitySlots = s.visibilitySlots;
+    desc.mostListEntries = s.mostListEntries;
+    desc.mostVisibilitySlots = s.mostVisibilitySlots;
     desc.atlasSizePx = s.atlas;
-    desc.deviceDepth = s.depth == "standard" ? DeviceDepth::StandardZ : DeviceDepth::ReversedZ;
-    desc.quantiseInline = !s.unquantised;
     return desc;
 }
 

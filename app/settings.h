@@ -1,5 +1,6 @@
 #pragma once
-// The options that `render`, `verify` and `bench` share: which scene, seen how, drawn by what.
+// The settings that `render`, `verify` and `bench` share: which scene, seen how, drawn by what. settings_table.h says
+// what each may be.
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
@@ -26,23 +27,24 @@ struct Settings {
     std::uint32_t pcfRadius = 1;
     std::string taps = "medium";
     bool patternPerFrame = false;
+    bool noShadowBounds = false;
     std::uint32_t visibilityBits = 8;
+    bool unquantised = false;
     std::string bias = "oriented";
     std::string hardwareBias;  // empty: as `bias` has it
     float biasMetres = 0.002f, subsurfaceBiasMetres = 0.02f;
     bool subsurfaceFronts = false;
     std::string faceNormals = "stored";
-    bool noShadowBounds = false;
-    std::string device;
-    bool validate = false;
-    std::uint32_t listEntries = 0, visibilitySlots = 0;
-    std::string reservation = "accurate";
-    std::uint32_t subgroupSize = 0;
-    std::string depth = "reversed";
     std::uint32_t atlas = 0;
-    bool unquantised = false;
+    std::string depth = "reversed";
+    std::uint32_t listEntries = 0, visibilitySlots = 0, mostListEntries = 0, mostVisibilitySlots = 0;
+    std::string reservation = "accurate";
+    std::string device;
+    std::uint32_t subgroupSize = 0;
+    bool validate = false;
 };
 
+/// The scene and all rows of the table, by groups. After a command's own options, so that these come first in its help.
 void addSettings(CLI::App& command, Settings& settings);
 
 /// As CLI::Range, which lets NaN pass.
@@ -55,7 +57,12 @@ inline double frameTime(double firstSeconds, std::uint64_t frame, double framesP
 
 const std::vector<std::string>& biasNames();
 /// Sets how depths are biased, one of biasNames(), each with its own way to draw; throws UsageError otherwise.
-void setBias(const std::string& name, renderer::RendererDesc& desc);
+void setBias(const std::string& name, renderer::FrameSettings& settings);
+
+/// Filters parted by commas; throws UsageError where one is none.
+std::vector<Filter> filtersOf(const std::string& text);
+/// Whether soft truth is to be judged: every light has PCSS.
+bool allSoft(const std::vector<Filter>& filters);
 
 /// Throws UsageError on what no device could do.
 renderer::RendererDesc rendererDescOf(const Settings& settings);

@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
-#include "gnomon/tiled_shadows.h"
+#include "core/passes.h"
+#include "gnomon/gnomon.h"
 #include "gpu_interface/numbers.h"
-#include "passes.h"
 #include "renderer/gpu/device.h"
 #include "renderer/lighting/lighting_pipelines.h"
 
@@ -34,14 +34,15 @@ using renderer::GpuError;
 // The visibility providers that are compared: a row for each wherever shadows are evaluated.
 struct Provider {
     const char* name;
-    Filter filter;
+    FilterSet filters;
     std::uint32_t pcfRadius;
 };
 constexpr Provider kProviders[] = {
-    {"hard", Filter::Hard, 1},
-    {"pcf, radius 1", Filter::Pcf, 1},
-    {"pcf, radius 3", Filter::Pcf, 3},
-    {"pcss", Filter::Pcss, 1},
+    {"hard", only(Filter::Hard), 1},
+    {"pcf, radius 1", only(Filter::Pcf), 1},
+    {"pcf, radius 3", only(Filter::Pcf), 3},
+    {"pcss", only(Filter::Pcss), 1},
+    {"hard, pcf and pcss", kAllBuiltInFilters, 1},
 };
 
 // A figure of a pipeline, under the names that drivers give it.
@@ -141,7 +142,7 @@ struct Row {
     Statistics statistics;
 };
 
-std::unique_ptr<Context> makeContext(const Device& device, const Provider& provider, std::uint32_t lanes) {
+std::unique_ptr<Context> makeContext(const Device& device, std::uint32_t lanes) {
     const std::uint32_t family = device.queueFamily();
     ContextDesc desc;
     desc.instance = device.instance().handle();
@@ -150,8 +151,6 @@ std::unique_ptr<Context> makeContext(const Device& device, const Provider& provi
     desc.getInstanceProcAddr = instanceFunction;
     desc.queueFamilies = {&family, 1};
     desc.subgroupSize = lanes;
-    desc.filter = provider.filter;
-    desc.pcfRadius = provider.pcfRadius;
     desc.maxShadowAtlases = 1;  // as the reference renderer has
     std::unique_ptr<Context> context;
     const Result made = Context::create(desc, context);
@@ -162,14 +161,16 @@ std::unique_ptr<Context> makeContext(const Device& device, const Provider& provi
 // All pipelines of one provider and width, in the order in which they are created.
 std::vector<Row> rowsOf(const Device& device, const Provider& provider, std::uint32_t lanes) {
     capture.captured.clear();
-    const std::unique_ptr<Context> context = makeContext(device, provider, lanes);
-    const renderer::LightingPipelines lighting(device, *context, {});
-    const std::size_t withMasks = capture.captured.size();
+    const std::unique_ptr<Context> context = makeContext(device, lanes);
+    ShadowSettings settings;
+    settings.filters = provider.filters;
+    settings.pcfRadius = provider.pcfRadius;
+    if (const Result made = context->prepare(settings); !made) throw GpuError(made.message());
+    using enum renderer::LightingKind;
+    renderer::LightingPipelines lighting(device, *context);
+    for (const renderer::LightingKind kind : {Deferred, Evaluate, Inline, Unshadowed}) lighting.get(kind, settings);
     // The reference renderer's inline pipeline as it is measured: without the way out for tiles that got no list space.
-    const renderer::LightingPipelines lean(device, *context, {.walksMasks = false});
-    const Statistics leanInline = capture.captured[withMasks + 2];
-    capture.captured.resize(withMasks);
-    capture.captured.push_back(leanInline);
+    lighting.get(Inline, settings, {.walksMasks = false});
     std::vector<std::string> names;
     for (std::uint32_t id = 0; id < kPassCount; ++id) names.emplace_back(passOf(static_cast<PassId>(id)).name);
     for (const char* name : {"lighting_deferred", "lighting_evaluate", "lighting_inline", "lighting_unshadowed",

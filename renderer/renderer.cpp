@@ -7,17 +7,16 @@
 #include <glm/gtc/packing.hpp>
 #include <utility>
 
-#include "gpu_interface/numbers.h"
-#include "gpu_interface/structs.h"
-#include "renderer/camera.h"
+#include "renderer/frame/camera.h"
+#include "renderer/frame/frame.h"
+#include "renderer/frame/lights.h"
+#include "renderer/frame/shadowmaps.h"
 #include "renderer/gbuffer/gbuffer.h"
 #include "renderer/gpu/error.h"
 #include "renderer/gpu/gpu_scene.h"
-#include "renderer/gpu/timer.h"
 #include "renderer/lighting/light_visibility.h"
 #include "renderer/lighting/lighting.h"
 #include "renderer/shadow_atlas/plan.h"
-#include "renderer/shadow_atlas/shadow_atlas.h"
 #include "scene/pose.h"
 
 namespace gnomon::renderer {
@@ -25,8 +24,10 @@ namespace {
 
 constexpr std::uint32_t kFramesInFlight = GpuScene::kFramesInFlight;
 
-void require(const Result& result) {
-    if (!result) throw GpuError(result.message());
+std::unique_ptr<Timeline> makeTimeline(const Context& context) {
+    std::unique_ptr<Timeline> timeline;
+    require(Timeline::create(context, {.framesInFlight = kFramesInFlight}, timeline));
+    return timeline;
 }
 
 std::unique_ptr<Context> makeContext(const Device& device, const RendererDesc& desc) {
@@ -40,61 +41,10 @@ std::unique_ptr<Context> makeContext(const Device& device, const RendererDesc& d
     c.queueFamilies = std::span(&family, 1);
     c.debugLabels = device.instance().debugLabels();
     c.subgroupSize = desc.subgroupSize;
-    c.filter = desc.filter;
-    c.pcfRadius = desc.pcfRadius;
-    c.pcss = desc.pcss;
-    c.visibilityBits = desc.visibilityBits;
-    c.depthBias = desc.depthBias;
-    c.facedAwayIsDark = desc.facedAwayIsDark;
     c.maxShadowAtlases = 1;
-    c.listReservation = desc.listReservation;
-    c.fixedListEntriesPerTile = desc.fixedListEntriesPerTile;
     std::unique_ptr<Context> context;
     require(Context::create(c, context));
     return context;
-}
-
-std::unique_ptr<View> makeView(const Context& context, const RendererDesc& desc, std::uint64_t texelsOfAtlas) {
-    ViewDesc v;
-    v.maxWidthPx = desc.widthPx;
-    v.maxHeightPx = desc.heightPx;
-    v.framesInFlight = kFramesInFlight;
-    v.listEntries = desc.listEntries;
-    v.visibilitySlots = desc.visibilitySlots;
-    v.shadowBoundsTexels = desc.shadowBounds ? texelsOfAtlas : 0;
-    v.maxShadowViews = gpu::kMaxLightsPerView * gpu::kPointLightFaces;
-    std::unique_ptr<View> view;
-    require(View::create(context, v, view));
-    return view;
-}
-
-LightType typeOf(LightKind kind) {
-    switch (kind) {
-        case LightKind::Point:
-            return LightType::Point;
-        case LightKind::Spot:
-            return LightType::Spot;
-        case LightKind::Directional:
-            return LightType::Directional;
-    }
-    return LightType::Point;
-}
-
-Light lightOf(const SceneLight& light, const glm::dvec3& origin, std::uint32_t firstShadowView,
-              std::uint32_t cascadeCount, float defaultBiasMetres) {
-    Light l;
-    l.type = typeOf(light.kind);
-    const glm::vec3 position(glm::dvec3(light.position) - origin);
-    std::memcpy(l.position, &position, sizeof(l.position));
-    std::memcpy(l.direction, &light.direction, sizeof(l.direction));
-    l.rangeMetres = light.rangeMetres;
-    l.intensity = light.intensity * std::max({light.colour.x, light.colour.y, light.colour.z});
-    l.outerConeAngle = std::min(light.outerConeAngle, 1.55f);
-    l.sourceRadius = light.sourceRadius;
-    l.biasMetres = light.biasMetres >= 0.0f ? light.biasMetres : defaultBiasMetres;
-    l.firstShadowView = firstShadowView;
-    l.cascadeCount = cascadeCount;
-    return l;
 }
 
 ShadowPlanCamera planCameraOf(const SceneCamera& camera, const GBufferCamera& gbuffer, const glm::dvec3& origin,
@@ -119,7 +69,7 @@ ShadowPlanSettings planSettingsOf(const Device& device, const Scene& scene, cons
     ShadowPlanSettings settings;
     const std::uint32_t largest = std::bit_floor(device.limits().maxFramebufferWidth);
     const std::uint32_t wanted =
-        desc.atlasSizePx != 0 ? desc.atlasSizePx : ShadowAtlasImage::defaultSizePx(device, desc.heightPx);
+        desc.atlasSizePx != 0 ? desc.atlasSizePx : ShadowAtlasImage::defaultSizePx(device, desc.frame.heightPx);
     settings.atlasSizePx = std::min(std::bit_floor(wanted), largest);
     const Bounds bounds = animatedBounds(scene, 16);
     if (!bounds.empty()) {
@@ -141,45 +91,44 @@ void requireReachable(const glm::vec3& position, const char* what, const std::st
 
 struct Renderer::State {
     const Device& device;
-    RendererDesc desc;
+    FrameSettings settings;
     Scene posable;
     Pose pose;
     const std::vector<SceneLight>& sceneLights = pose.lights;
     std::vector<ShadowLight> shadowLights;
     std::unique_ptr<Context> context;
-    std::unique_ptr<View> view;
+    std::unique_ptr<Timeline> timeline;
     GpuScene scene;
     GBuffer gbuffer;
     ShadowPlanner planner;
-    ShadowAtlasImage atlas;
+    Shadowmaps shadowmaps;
     Lighting lighting;
-    GpuTimer timer;
     Commands commands[kFramesInFlight];
-    std::unique_ptr<Prepare> selection;  // where more lights are given than a view can have
-    std::vector<std::byte> selectionMemory;
     std::unique_ptr<LightVisibility> lightVisibility;  // from the first time that it is asked for
     ShadowPlan lastPlan;
+    ShadowSettings lastShadows;
+    VkExtent2D lastExtent{};
     glm::dvec3 lastOrigin{0.0};
     std::uint64_t frameNumber = 0;
+    std::uint32_t resizes = 0;
     struct Known {
         std::uint64_t frameNumber = ~0ull;
+        const View* view = nullptr;
         FrameReport report;  // all but statistics and passes
     } known[kFramesInFlight];
 
     State(const Device& d, const Scene& s, const RendererDesc& r)
         : device(d),
-          desc(r),
+          settings(r.frame),
           posable(posablePart(s)),
           pose(poseAt(posable, 0.0)),
           context(makeContext(d, r)),
-          view(makeView(*context, r,
-                        std::uint64_t{planSettingsOf(d, s, r).atlasSizePx} * planSettingsOf(d, s, r).atlasSizePx)),
+          timeline(makeTimeline(*context)),
           scene(d, s),
-          gbuffer(d, scene, r.widthPx, r.heightPx),
+          gbuffer(d, scene, r.frame.widthPx, r.frame.heightPx),
           planner(planSettingsOf(d, s, r)),
-          atlas(d, scene, planner.settings().atlasSizePx, 1, r.shadowDrawing),
-          lighting(d, *context, s, gbuffer, {.quantises = r.quantiseInline, .walksMasks = !r.inlineNeedsLists}),
-          timer(d, kFramesInFlight),
+          shadowmaps(d, *context, scene, r, planner.settings().atlasSizePx, kFramesInFlight),
+          lighting(d, *context, s, gbuffer),
           commands{Commands(d), Commands(d)} {
         std::ranges::transform(sceneLights, std::back_inserter(shadowLights), shadowLightOf);
         takePose();
@@ -189,11 +138,12 @@ struct Renderer::State {
 
     void setTime(double seconds);
     void takePose();
-
-    std::vector<Light> lightsOf(const glm::dvec3& origin, const ShadowPlan& plan) const;
-    void selectCasters(const Camera& camera, const glm::dvec3& origin);
-    void beginView(const Camera& camera, const glm::dvec3& origin, const ShadowPlan& plan, ShadowMode mode);
-    void recordPasses(VkCommandBuffer c, const GBufferCamera& camera, ShadowMode mode, FrameReport& report);
+    void growTo(std::uint32_t widthPx, std::uint32_t heightPx);
+    PreparedLights prepareLights(View& view, const Camera& camera, const glm::dvec3& origin);
+    ShadowPlan planShadows(const PreparedLights& prepared, const SceneCamera& sceneCamera, const Camera& camera,
+                           const glm::dvec3& origin);
+    void beginView(Shadowmaps::Pair& maps, const PreparedLights& prepared, const ShadowPlan& plan,
+                   const ShadowSettings& shadows);
 };
 
 Renderer::Renderer(const Device& device, const Scene& scene, const RendererDesc& desc)
@@ -201,6 +151,47 @@ Renderer::Renderer(const Device& device, const Scene& scene, const RendererDesc&
 
 Renderer::~Renderer() {
     if (state_ != nullptr) state_->device.waitIdle();
+}
+
+void Renderer::set(const FrameSettings& settings) {
+    if (settings.filters.empty()) throw GpuError("FrameSettings::filters names no filter.");
+    state_->growTo(settings.widthPx, settings.heightPx);
+    state_->settings = settings;
+}
+
+const FrameSettings& Renderer::settings() const {
+    return state_->settings;
+}
+
+void Renderer::prepare(ShadowMode mode) {
+    State& s = *state_;
+    const ShadowSettings shadows = librarySettings(s.sceneLights, s.settings);
+    require(s.context->prepare(shadows));
+    switch (mode) {
+        case ShadowMode::Deferred:
+            s.lighting.prepare(LightingKind::Deferred, shadows, {});
+            s.lighting.prepare(LightingKind::Evaluate, shadows, {});
+            break;
+        case ShadowMode::Inline:
+            s.lighting.prepare(LightingKind::Inline, shadows, s.settings.inlineVariant);
+            break;
+        case ShadowMode::Off:
+            s.lighting.prepare(LightingKind::Unshadowed, shadows, s.settings.inlineVariant);
+            break;
+    }
+}
+
+// The images hold the largest extent that was asked for; smaller frames use a part of them.
+void Renderer::State::growTo(std::uint32_t widthPx, std::uint32_t heightPx) {
+    const VkExtent2D now = gbuffer.extent();
+    if (widthPx <= now.width && heightPx <= now.height) return;
+    device.waitIdle();
+    const std::uint32_t width = std::max(widthPx, now.width), height = std::max(heightPx, now.height);
+    gbuffer.resize(width, height);
+    lighting.resize(gbuffer);
+    shadowmaps.growTo(width, height);
+    lightVisibility.reset();
+    ++resizes;
 }
 
 void Renderer::State::setTime(double seconds) {
@@ -218,105 +209,50 @@ void Renderer::State::takePose() {
     for (std::size_t i = 0; i < sceneLights.size(); ++i) {
         if (sceneLights[i].node == kNone) continue;
         requireReachable(sceneLights[i].position, "light", sceneLights[i].name);
-        const bool casts = shadowLights[i].casts;
         shadowLights[i] = shadowLightOf(sceneLights[i]);
-        shadowLights[i].casts = casts;
     }
 }
 
-std::vector<Light> Renderer::State::lightsOf(const glm::dvec3& origin, const ShadowPlan& plan) const {
-    std::vector<Light> lights;
-    lights.reserve(sceneLights.size());
-    for (std::size_t i = 0; i < sceneLights.size(); ++i) {
-        const bool none = plan.firstView.empty() || !sceneLights[i].casts;
-        const std::uint32_t first = none ? kNoShadowViews : plan.firstView[i];
-        lights.push_back(lightOf(sceneLights[i], origin, first, plan.cascadeCount, desc.biasMetres));
-    }
-    return lights;
-}
-
-// Only lights that phase 1 will keep deserve shadowmaps. Asking phase 1 itself, with a history of its own that sees the
-// same frames, gives the very choice that the view will make.
-void Renderer::State::selectCasters(const Camera& camera, const glm::dvec3& origin) {
-    if (sceneLights.size() <= gpu::kMaxLightsPerView) return;
-    const PrepareSizes sizes = prepareSizes(desc.widthPx, desc.heightPx);
-    if (selection == nullptr) {
-        require(Prepare::create({.maxWidthPx = desc.widthPx, .maxHeightPx = desc.heightPx}, selection));
-        selectionMemory.resize(sizes.frameConstants + sizes.lights + sizes.zBins + sizes.tileLightMasks);
-    }
-    std::byte* memory = selectionMemory.data();
-    const auto take = [&memory](std::size_t bytes) { return std::exchange(memory, memory + bytes); };
-    const PrepareOutput output = {take(sizes.frameConstants), take(sizes.lights), take(sizes.zBins),
-                                  take(sizes.tileLightMasks)};
-    const std::vector<Light> lights = lightsOf(origin, {});
+// Phase 1: which lights are visible.
+PreparedLights Renderer::State::prepareLights(View& view, const Camera& camera, const glm::dvec3& origin) {
+    const std::vector<Light> lights = libraryLights(sceneLights, origin, settings);
     ViewInput input;
     input.camera = camera;
-    input.widthPx = desc.widthPx;
-    input.heightPx = desc.heightPx;
+    input.widthPx = settings.widthPx;
+    input.heightPx = settings.heightPx;
     input.lights = lights;
-    PrepareReport report;
-    require(selection->run(input, output, report));
-    for (ShadowLight& light : shadowLights) light.casts = false;
-    const auto* kept = static_cast<const gpu::GpuLight*>(output.lights);
-    for (std::uint32_t i = 0; i < report.visible; ++i) {
-        shadowLights[kept[i].hostIndex].casts = sceneLights[kept[i].hostIndex].casts;
-    }
+    PreparedLights prepared;
+    require(view.prepare(input, prepared));
+    return prepared;
 }
 
-// Phase 1 and everything else the library wants to know of the frame.
-void Renderer::State::beginView(const Camera& camera, const glm::dvec3& origin, const ShadowPlan& plan,
-                                ShadowMode mode) {
-    const std::vector<Light> lights = lightsOf(origin, plan);
+ShadowPlan Renderer::State::planShadows(const PreparedLights& prepared, const SceneCamera& sceneCamera,
+                                        const Camera& camera, const glm::dvec3& origin) {
+    chooseCasters(sceneLights, prepared, shadowLights);
+    return planner.plan(shadowLights,
+                        planCameraOf(sceneCamera, gbufferCameraOf(camera), origin, settings.widthPx, settings.heightPx),
+                        origin);
+}
+
+// Everything else that the library wants to know of the frame.
+void Renderer::State::beginView(Shadowmaps::Pair& maps, const PreparedLights& prepared, const ShadowPlan& plan,
+                                const ShadowSettings& shadows) {
+    const std::vector<LightShadowViews> lights = lightViews(prepared, plan);
     std::vector<ShadowView> views;
     views.reserve(plan.views.size());
     for (const PlannedView& planned : plan.views) views.push_back(planned.view);
-    const ShadowAtlas atlases[] = {atlas.atlas()};
+    const ShadowAtlas atlases[] = {maps.atlas.atlas()};
     FrameDesc frame;
     frame.frameNumber = frameNumber;
-    frame.view.camera = camera;
-    frame.view.widthPx = desc.widthPx;
-    frame.view.heightPx = desc.heightPx;
-    frame.view.lights = lights;
+    frame.settings = shadows;
+    frame.lightViews = lights;
     frame.shadowViews = views;
     frame.depth = {gbuffer.depth().view()};
-    if (desc.readFaceNormals) frame.faceNormals = {gbuffer.view(GBuffer::FaceNormal)};
+    if (settings.readFaceNormals) frame.faceNormals = {gbuffer.view(GBuffer::FaceNormal)};
     frame.receiverFlags = {gbuffer.view(GBuffer::Receiver)};
     frame.atlases = atlases;
-    frame.subsurfaceBiasMetres = desc.shadowDrawing.subsurfaceFronts ? desc.subsurfaceBiasMetres : 0.0f;
-    frame.patternPerFrame = desc.patternPerFrame;
-    frame.shadowBounds = desc.shadowBounds && mode != ShadowMode::Off;
-    require(view->beginFrame(frame));
-}
-
-void Renderer::State::recordPasses(VkCommandBuffer c, const GBufferCamera& camera, ShadowMode mode,
-                                   FrameReport& report) {
-    {
-        const GpuScope scope(&timer, c, "gbuffer");
-        gbuffer.record(c, scene, camera);
-    }
-    view->recordHierarchicalDepth(c);
-    view->recordFindLightsApproximate(c);
-    view->recordFindLightsAccurate(c);
-    {
-        const GpuScope scope(&timer, c, "shadow_atlas");
-        const ShadowAtlasStatistics drawn = atlas.record(c, scene);
-        report.shadowViewsDrawn = drawn.viewsDrawn;
-        report.shadowTrianglesDrawn = drawn.triangles;
-    }
-    if (desc.shadowBounds && mode != ShadowMode::Off) view->recordShadowBounds(c);
-    switch (mode) {
-        case ShadowMode::Deferred:
-            view->recordGenerateShadows(c);
-            lighting.recordDeferred(c, *view, &timer);
-            break;
-        case ShadowMode::Inline:
-            lighting.recordInline(c, *view, LightingVariant::Inline, &timer);
-            break;
-        case ShadowMode::Off:
-            lighting.recordInline(c, *view, LightingVariant::Unshadowed, &timer);
-            break;
-    }
-    view->recordEndFrame(c);
+    frame.timeline = timeline.get();
+    require(maps.view->beginFrame(frame));
 }
 
 std::uint64_t Renderer::renderFrame(const SceneCamera& cameraAtRest, ShadowMode mode, double timeSeconds) {
@@ -325,30 +261,42 @@ std::uint64_t Renderer::renderFrame(const SceneCamera& cameraAtRest, ShadowMode 
     const SceneCamera sceneCamera = posedCamera(s.posable, s.pose, cameraAtRest);
     requireReachable(glm::vec3(sceneCamera.worldFromCamera[3]), "camera", sceneCamera.name);
     const std::uint64_t number = s.frameNumber;
+    const glm::dvec3 origin = frameOriginOf(sceneCamera);
+    const Camera camera =
+        cameraOf(sceneCamera, origin, s.settings.widthPx, s.settings.heightPx, s.settings.deviceDepth);
+    ShadowSettings shadows = librarySettings(s.sceneLights, s.settings);
+    shadows.shadowBounds = shadows.shadowBounds && mode != ShadowMode::Off;
+
     Commands& commands = s.commands[number % kFramesInFlight];
     const VkCommandBuffer c = commands.begin();
-    s.timer.beginFrame(c, number);
-    const glm::dvec3 origin = frameOriginOf(sceneCamera);
-    const Camera camera = cameraOf(sceneCamera, origin, s.desc.widthPx, s.desc.heightPx, s.desc.deviceDepth);
-    const GBufferCamera gbufferCamera = gbufferCameraOf(camera);
+    s.timeline->beginFrame(c, number);
     s.scene.recordTransforms(c, origin);
-    s.selectCasters(camera, origin);
-    ShadowPlan plan = s.planner.plan(
-        s.shadowLights, planCameraOf(sceneCamera, gbufferCamera, origin, s.desc.widthPx, s.desc.heightPx), origin);
-    s.atlas.prepare(s.scene, s.shadowLights, plan);
-    s.beginView(camera, origin, plan, mode);
+
+    Shadowmaps::Pair& maps = s.shadowmaps.pairFor(s.settings.drawing);
+    const PreparedLights prepared = s.prepareLights(*maps.view, camera, origin);
+    ShadowPlan plan = s.planShadows(prepared, sceneCamera, camera, origin);
+    maps.atlas.prepare(s.scene, s.shadowLights, plan);
+    s.beginView(maps, prepared, plan, shadows);
+    const FrameParts parts = {s.device, s.scene, s.gbuffer, maps.atlas, *maps.view, s.lighting, *s.timeline};
+    const FrameView view = {
+        gbufferCameraOf(camera), {s.settings.widthPx, s.settings.heightPx}, mode, shadows, s.settings.inlineVariant};
+    const ShadowAtlasStatistics drawn = recordFrame(c, parts, view);
+    commands.submit();
 
     State::Known& known = s.known[number % kFramesInFlight];
     known = {};
     known.frameNumber = number;
+    known.view = maps.view.get();
     known.report.shadowViews = static_cast<std::uint32_t>(plan.views.size());
+    known.report.shadowViewsDrawn = drawn.viewsDrawn;
+    known.report.shadowTrianglesDrawn = drawn.triangles;
     known.report.shadowLightsShrunk = plan.lightsShrunk;
     known.report.shadowLightsDropped = plan.lightsWithout;
     known.report.atlasSizePx = s.planner.settings().atlasSizePx;
-    s.recordPasses(c, gbufferCamera, mode, known.report);
-    commands.submit();
     s.lastPlan = std::move(plan);
     s.lastOrigin = origin;
+    s.lastShadows = shadows;
+    s.lastExtent = view.extent;
     ++s.frameNumber;
     return number;
 }
@@ -361,66 +309,55 @@ FrameReport Renderer::report(std::uint64_t frameNumber) const {
     const State& s = *state_;
     const State::Known& known = s.known[frameNumber % kFramesInFlight];
     FrameReport report = known.report;
-    if (known.frameNumber != frameNumber || !s.view->statistics(frameNumber, report.statistics)) {
+    if (known.frameNumber != frameNumber || !known.view->statistics(frameNumber, report.statistics)) {
         throw GpuError("The report of a frame was asked for that is not known any more.");
     }
-    const FrameStatistics& statistics = report.statistics;
-    const auto library = [&](const std::string& name) {
-        for (std::uint32_t i = 0; i < statistics.passCount; ++i) {
-            if (name == statistics.passes[i].name)
-                report.passes.push_back({name, statistics.passes[i].milliseconds, false});
-        }
-    };
-    // In order of execution: the library's phases stand between the renderer's own passes.
-    for (const GpuTime& time : s.timer.times(frameNumber)) {
-        const bool drawing = time.name == "gbuffer" || time.name == "shadow_atlas";
-        report.passes.push_back({time.name, time.milliseconds, drawing});
-        if (time.name == "gbuffer") {
-            library("hierarchical_depth");
-            library("find_lights_approximate");
-            library("find_lights_accurate");
-        }
-        if (time.name == "shadow_atlas") {
-            library("shadow_bounds");
-            library("generate_shadows");
-        }
-    }
-    if (!report.passes.empty()) library("gather_statistics");
+    const std::span<const TimelineRow> rows = s.timeline->rows(frameNumber);
+    report.passes.assign(rows.begin(), rows.end());
     return report;
 }
 
 HdrPicture Renderer::readPicture() {
+    State& s = *state_;
     wait();
-    const GpuImage& image = state_->lighting.picture();
-    const std::vector<std::uint8_t> bytes = readImage(state_->device, image, VK_IMAGE_LAYOUT_GENERAL);
+    const GpuImage& image = s.lighting.picture();
+    const std::vector<std::uint8_t> bytes = readImage(s.device, image, VK_IMAGE_LAYOUT_GENERAL);
     HdrPicture picture;
-    picture.width = state_->desc.widthPx;
-    picture.height = state_->desc.heightPx;
+    picture.width = s.lastExtent.width;
+    picture.height = s.lastExtent.height;
     picture.rgba.resize(std::size_t(picture.width) * picture.height * 4);
-    for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
-        std::uint16_t half;
-        std::memcpy(&half, bytes.data() + 2 * i, 2);
-        picture.rgba[i] = glm::unpackHalf1x16(half);
+    for (std::size_t y = 0, i = 0; y < picture.height; ++y) {
+        const std::uint8_t* row = bytes.data() + y * image.desc().width * 8;
+        for (std::size_t x = 0; x < std::size_t{4} * picture.width; ++x) {
+            std::uint16_t half;
+            std::memcpy(&half, row + 2 * x, 2);
+            picture.rgba[i++] = glm::unpackHalf1x16(half);
+        }
     }
     return picture;
 }
 
 std::vector<std::uint32_t> Renderer::readTriangleIds() {
+    State& s = *state_;
     wait();
-    const std::vector<std::uint8_t> bytes =
-        readImage(state_->device, state_->gbuffer.image(GBuffer::TriangleId), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    std::vector<std::uint32_t> ids(bytes.size() / 4);
-    std::memcpy(ids.data(), bytes.data(), ids.size() * 4);
-    for (std::uint32_t& id : ids) id = state_->scene.trianglePosition(id);
+    const GpuImage& image = s.gbuffer.image(GBuffer::TriangleId);
+    const std::vector<std::uint8_t> bytes = readImage(s.device, image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    std::vector<std::uint32_t> ids(std::size_t{s.lastExtent.width} * s.lastExtent.height);
+    for (std::size_t y = 0; y < s.lastExtent.height; ++y)
+        std::memcpy(&ids[y * s.lastExtent.width], bytes.data() + y * image.desc().width * 4,
+                    std::size_t{4} * s.lastExtent.width);
+    for (std::uint32_t& id : ids) id = s.scene.trianglePosition(id);
     return ids;
 }
 
 std::vector<float> Renderer::readVisibility(std::uint32_t light) {
     State& s = *state_;
     wait();
+    const VkExtent2D whole = s.gbuffer.extent();
     if (s.lightVisibility == nullptr)
-        s.lightVisibility = std::make_unique<LightVisibility>(s.device, *s.context, s.desc.widthPx, s.desc.heightPx);
-    return s.lightVisibility->read(*s.view, light);
+        s.lightVisibility = std::make_unique<LightVisibility>(s.device, *s.context, whole.width, whole.height);
+    return s.lightVisibility->read(*s.shadowmaps.current().view, s.lastShadows, light, s.lastExtent.width,
+                                   s.lastExtent.height);
 }
 
 std::vector<ShadowView> Renderer::shadowViews(std::uint32_t light) const {
@@ -437,23 +374,25 @@ glm::dvec3 Renderer::frameOrigin() const {
 std::vector<MemoryUseRow> Renderer::memory() const {
     const State& s = *state_;
     std::vector<MemoryUseRow> rows;
-    const MemoryReport& library = s.view->memory();
-    for (std::uint32_t i = 0; i < library.bufferCount; ++i) {
-        const BufferMemory& buffer = library.buffers[i];
+    for (const BufferMemory& buffer : libraryMemory().buffers())
         rows.push_back({buffer.name, buffer.bytes, true, buffer.perFrame ? kFramesInFlight : 1u});
-    }
-    for (const auto& part :
-         {s.scene.memoryRows(), s.gbuffer.memoryRows(), s.atlas.memoryRows(), s.lighting.memoryRows()}) {
+    for (const auto& part : {s.scene.memoryRows(), s.gbuffer.memoryRows(), s.shadowmaps.current().atlas.memoryRows(),
+                             s.lighting.memoryRows()}) {
         for (const MemoryRow& row : part) rows.push_back({row.name, row.bytes, false, 1u});
     }
     return rows;
 }
 
 const MemoryReport& Renderer::libraryMemory() const {
-    return state_->view->memory();
+    return state_->shadowmaps.current().view->memory();
 }
 std::uint32_t Renderer::subgroupSize() const {
     return state_->context->subgroupSize();
+}
+RendererCounts Renderer::counts() const {
+    const State& s = *state_;
+    return {s.context->pipelineCount(), static_cast<std::uint32_t>(s.lighting.pipelineCount()), s.shadowmaps.count(),
+            s.resizes};
 }
 
 }  // namespace gnomon::renderer

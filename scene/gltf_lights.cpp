@@ -64,6 +64,13 @@ void addLight(Document& document, const PlacedNode& node, Scene& scene) {
         if (!(light.biasMetres >= 0.0f && light.biasMetres <= 1000.0f))
             refuse("{} has a shadowBiasMetres that is no length of up to 1000 m", user);
     }
+    if (const tinygltf::Value* filter = member(source.extras, "shadowFilter")) {
+        const std::string name = filter->IsString() ? filter->Get<std::string>() : "";
+        if (name == "hard") light.filter = Filter::Hard;
+        if (name == "pcf") light.filter = Filter::Pcf;
+        if (name == "pcss") light.filter = Filter::Pcss;
+        if (!light.filter) refuse("{} has a shadowFilter that is none of hard, pcf and pcss", user);
+    }
     scene.lights.push_back(std::move(light));
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "gnomon/result.h"
+#include "gnomon/settings.h"
 #include "scene/animation.h"
 
 namespace gnomon::renderer {
@@ -112,8 +113,9 @@ struct SceneLight {
     float innerConeAngle = 0.0f, outerConeAngle = 0.785398163f;  // half-angles, radians
     float sourceRadius = 0.0f;                                   // metres, directional: radians; 0: none given
     bool casts = true;
-    float biasMetres = -1.0f;    // depth bias; below 0: the renderer's default
-    std::uint32_t node = kNone;  // moves with this node; position and direction are those at rest
+    float biasMetres = -1.0f;      // depth bias; below 0: the renderer's default
+    std::optional<Filter> filter;  // of its shadow; none: the renderer's choice
+    std::uint32_t node = kNone;    // moves with this node; position and direction are those at rest
 };
 
 struct SceneCamera {

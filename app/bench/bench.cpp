@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <map>
+#include <algorithm>
 #include <memory>
 #include <set>
 
@@ -36,27 +36,27 @@ struct Way {
 Way wayOf(const std::string& name) {
     const std::size_t at = name.find('@');
     Way way = {shadowModeOf(name.substr(0, at)), at == std::string::npos ? "" : name.substr(at + 1)};
-    renderer::RendererDesc unused;
+    renderer::FrameSettings unused;
     if (at != std::string::npos) setBias(way.bias, unused);
     return way;
 }
 
-// Renderers remember two finished frames, so frames of one renderer go in pairs: submit two, wait, read both. Before
-// another renderer's turn all is waited for: nothing orders their frames on the device.
+// A renderer remembers two finished frames, so frames go in pairs: submit two, wait, read both.
 class PairedFrames {
 public:
-    void submit(renderer::Renderer& renderer, renderer::ShadowMode mode, const renderer::SceneCamera& camera,
+    explicit PairedFrames(renderer::Renderer& renderer) : renderer_(renderer) {}
+
+    void submit(const renderer::FrameSettings& settings, renderer::ShadowMode mode, const renderer::SceneCamera& camera,
                 double timeSeconds, Variant* counting) {
-        if (renderer_ != &renderer || pending_.size() == 2) finish();
-        renderer_ = &renderer;
-        pending_.push_back({renderer.renderFrame(camera, mode, timeSeconds), counting});
+        if (pending_.size() == 2) finish();
+        renderer_.set(settings);
+        pending_.push_back({renderer_.renderFrame(camera, mode, timeSeconds), counting});
     }
 
     void finish() {
-        if (renderer_ == nullptr) return;
-        renderer_->wait();
+        renderer_.wait();
         for (const Pending& frame : pending_)
-            if (frame.variant != nullptr) frame.variant->add(renderer_->report(frame.number));
+            if (frame.variant != nullptr) frame.variant->add(renderer_.report(frame.number));
         pending_.clear();
     }
 
@@ -65,38 +65,47 @@ private:
         std::uint64_t number;
         Variant* variant;  // null while warming up
     };
-    renderer::Renderer* renderer_ = nullptr;
+    renderer::Renderer& renderer_;
     std::vector<Pending> pending_;
 };
 
-// One per depth bias: it is fixed in the pipelines.
-using Renderers = std::map<std::string, std::unique_ptr<renderer::Renderer>>;
-Renderers makeRenderers(const Session& session, const std::vector<std::string>& variants) {
-    Renderers renderers;
+renderer::FrameSettings settingsOf(const Session& session, const Way& way) {
+    renderer::FrameSettings settings = session.rendererDesc().frame;
+    settings.inlineVariant.walksMasks = false;
+    if (!way.bias.empty()) setBias(way.bias, settings);
+    return settings;
+}
+
+// One renderer for all variants. What each way of drawing shadowmaps has drawn is kept while another has its turn.
+renderer::RendererDesc descOf(const Session& session, const std::vector<std::string>& variants) {
+    renderer::RendererDesc desc = session.rendererDesc();
+    std::vector<renderer::ShadowDrawing> drawings;
     for (const std::string& name : variants) {
-        const std::string bias = wayOf(name).bias;
-        renderer::RendererDesc desc = session.rendererDesc();
-        desc.inlineNeedsLists = true;
-        if (!bias.empty()) setBias(bias, desc);
-        std::unique_ptr<renderer::Renderer>& slot = renderers[bias];
-        if (slot == nullptr) slot = std::make_unique<renderer::Renderer>(session.device(), session.scene(), desc);
+        const renderer::ShadowDrawing drawing = settingsOf(session, wayOf(name)).drawing;
+        if (std::ranges::find(drawings, drawing) == drawings.end()) drawings.push_back(drawing);
     }
-    return renderers;
+    desc.keptDrawings = static_cast<std::uint32_t>(drawings.size());
+    desc.frame = settingsOf(session, wayOf(variants.front()));
+    return desc;
 }
 
 std::vector<Variant> measure(const Session& session, const BenchOptions& options) {
-    const Renderers renderers = makeRenderers(session, options.variants);
+    renderer::Renderer renderer(session.device(), session.scene(), descOf(session, options.variants));
+    for (const std::string& name : options.variants) {  // no round shall make pipelines
+        renderer.set(settingsOf(session, wayOf(name)));
+        renderer.prepare(wayOf(name).mode);
+    }
     std::vector<Variant> variants(options.variants.begin(), options.variants.end());
     const std::uint32_t rounds = options.warmUp + options.frames;
     FrameProgress progress(std::uint64_t{rounds} * variants.size());
-    PairedFrames frames;
+    PairedFrames frames(renderer);
     std::uint64_t frame = 0;
     for (std::uint32_t round = 0; round < rounds; ++round)
         for (Variant& variant : variants) {
             // Time goes on from frame to frame, so that shadowmaps age alike for all variants.
             const double time = frameTime(options.settings.time, frame++, options.framesPerSecond);
             const Way way = wayOf(variant.name());
-            frames.submit(*renderers.at(way.bias), way.mode, session.camera(), time,
+            frames.submit(settingsOf(session, way), way.mode, session.camera(), time,
                           round >= options.warmUp ? &variant : nullptr);
             progress.step();
         }
@@ -154,7 +163,6 @@ int bench(const BenchOptions& options) {
 void addBenchCommand(CLI::App& app, Work& chosen) {
     CLI::App* command = app.add_subcommand("bench", "Measure ways to shadow against each other");
     const auto options = std::make_shared<BenchOptions>();
-    addSettings(*command, options->settings);
     command->add_option("--warmup", options->warmUp, "Rounds that do not count")
         ->check(CLI::Range(0, 10'000))
         ->capture_default_str();
@@ -175,6 +183,7 @@ void addBenchCommand(CLI::App& app, Work& chosen) {
     command->add_flag("--floor", options->floor,
                       "Measure the device's copies and texture samples too, and how far each pass is from them");
     command->add_option("--json", options->json, "Write the measurement to a file")->check(fileName());
+    addSettings(*command, options->settings);
     command->callback([&chosen, options, command] {
         applyPreset(options->preset, *command, options->settings, options->variants);
         chosen = [options] { return bench(*options); };

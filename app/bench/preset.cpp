@@ -96,10 +96,9 @@ struct Share {
 std::vector<Share> sharesOf(const Variant& variant) {
     std::vector<Share> shares;
     shares.push_back({"prepare", spreadOf(variant.prepare()).median, true});
-    for (const char* name :
-         {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "shadow_bounds", "generate_shadows"})
-        if (const Variant::Row* pass = variant.pass(name))
-            shares.push_back({name, spreadOf(pass->milliseconds).median});
+    for (const Variant::Row& pass : variant.passes())
+        if (pass.phase != Phase::Host && pass.phase != Phase::Lighting && pass.phase != Phase::Statistics)
+            shares.push_back({pass.name, spreadOf(pass.milliseconds).median});
     shares.push_back({"lighting", spreadOf(variant.lighting()).median});
     return shares;
 }

@@ -10,20 +10,26 @@ namespace gnomon::app {
 namespace {
 
 // The shadow filter's samples per pixel and light: what its shader does (src/generate_shadows).
-FilterSamples samplesOf(const renderer::RendererDesc& desc) {
+// Of lights that take turns, the mean.
+FilterSamples samplesOf(const renderer::FrameSettings& settings) {
     FilterSamples samples;
-    if (desc.filter == Filter::Hard) samples.fetches = 1;
-    if (desc.filter == Filter::Pcf) samples.gathers = (desc.pcfRadius + 1.0) * (desc.pcfRadius + 1.0);
-    if (desc.filter == Filter::Pcss) {
-        samples.gathers = desc.pcss.searchTaps;
-        samples.gathersIfMixed = desc.pcss.filterTaps;
+    const double share = 1.0 / static_cast<double>(settings.filters.size());
+    const ShadowSettings& shadows = settings.shadows;
+    for (const Filter filter : settings.filters) {
+        if (filter == Filter::Hard) samples.fetches += share;
+        if (filter == Filter::Pcf) samples.gathers += share * (shadows.pcfRadius + 1.0) * (shadows.pcfRadius + 1.0);
+        if (filter != Filter::Pcss) continue;
+        for (std::uint32_t i = 0; i < shadows.pcssPresetCount; ++i) {
+            samples.gathers += share * shadows.pcssPresets[i].searchTaps / shadows.pcssPresetCount;
+            samples.gathersIfMixed += share * shadows.pcssPresets[i].filterTaps / shadows.pcssPresetCount;
+        }
     }
     return samples;
 }
 
 FrameCounts countsOf(const Session& session, const renderer::FrameReport& report) {
     const FrameStatistics& s = report.statistics;
-    FrameCounts counts = frameCounts(session.rendererDesc().widthPx, session.rendererDesc().heightPx);
+    FrameCounts counts = frameCounts(session.rendererDesc().frame.widthPx, session.rendererDesc().frame.heightPx);
     counts.tilesWithGeometry = s.tilesWithGeometry;
     counts.visibleLights = s.lights.visible;
     counts.shadowViews = report.shadowViews;
@@ -31,7 +37,7 @@ FrameCounts countsOf(const Session& session, const renderer::FrameReport& report
     counts.earlyCastingEntries = s.earlyCastingEntries;
     counts.finalEntries = s.finalEntries;
     counts.slots = s.finalSlotEntries;
-    counts.slotBytes = 8.0 * session.rendererDesc().visibilityBits;  // 64 pixels
+    counts.slotBytes = 8.0 * session.rendererDesc().frame.shadows.visibilityBits;  // 64 pixels
     return counts;
 }
 
@@ -45,7 +51,7 @@ std::optional<Floor> floorOf(const Measurement& measured, const Variant& variant
     // Inline shading stores no slots, but has the same mixed tiles to filter.
     if (const Variant* deferred = find(measured.variants, "deferred"))
         counts.slots = deferred->last().report.statistics.finalSlotEntries;
-    const std::optional<PassNeed> need = needOf(pass.name, counts, samplesOf(measured.session.rendererDesc()));
+    const std::optional<PassNeed> need = needOf(pass.name, counts, samplesOf(measured.session.rendererDesc().frame));
     if (!need) return std::nullopt;
     return Floor{*need, floorMs(*need, *measured.rates)};
 }
@@ -65,11 +71,8 @@ void printVariant(const Measurement& measured, const Variant& variant) {
     for (const Variant::Row& row : variant.passes()) {
         const std::optional<Floor> floor = floorOf(measured, variant, row);
         if (floor) all = all.value_or(0.0) + floor->ms;
-        printRow(row.name,
-                 row.statistics ? "statistics"
-                 : row.drawing  ? "drawing"
-                                : "compute",
-                 row.milliseconds, floor ? std::optional(floor->ms) : std::nullopt);
+        printRow(row.name, row.phase == Phase::Statistics ? "statistics" : kindName(row.kind), row.milliseconds,
+                 floor ? std::optional(floor->ms) : std::nullopt);
     }
     printRow("shadow phases and lighting", "compute", variant.compute(), all);
     printRow("all drawing", "drawing", variant.drawing());
@@ -100,23 +103,20 @@ std::vector<Ratio> ratiosOf(const std::vector<Variant>& variants) {
 void Variant::add(const renderer::FrameReport& report) {
     // A pass that some frames leave out takes no time in them.
     const std::size_t before = compute_.size();
-    for (const renderer::PassTime& pass : report.passes) {
+    for (const TimelineRow& pass : report.passes) {
         auto row = std::find_if(passes_.begin(), passes_.end(), [&](const Row& r) { return r.name == pass.name; });
         if (row == passes_.end()) {
             const std::vector<double> none(before, 0.0);
-            row = passes_.insert(row, {pass.name, pass.drawing, isStatisticsPass(pass), none});
+            row = passes_.insert(row, {pass.name, pass.phase, pass.kind, none});
         }
-        row->milliseconds.push_back(pass.milliseconds);
+        row->milliseconds.push_back(pass.milliseconds());
     }
     for (Row& row : passes_) row.milliseconds.resize(before + 1, 0.0);
     const Totals totals = totalsOf(report.passes);
     drawing_.push_back(totals.drawing);
     compute_.push_back(totals.compute);
-    double lighting = 0.0;
-    for (const renderer::PassTime& pass : report.passes)
-        if (pass.name.starts_with("lighting")) lighting += pass.milliseconds;
-    lighting_.push_back(lighting);
-    phases_.push_back(totals.compute - lighting);
+    lighting_.push_back(totals.lighting);
+    phases_.push_back(totals.compute - totals.lighting);
     prepare_.push_back(report.statistics.prepareMilliseconds);
     last_.report = report;
 }
@@ -147,7 +147,7 @@ void printBench(const Measurement& measured) {
     const Session& session = measured.session;
     const std::vector<Variant>& variants = measured.variants;
     const FrameStatistics& s = variants.front().last().report.statistics;
-    const renderer::RendererDesc& desc = session.rendererDesc();
+    const renderer::FrameSettings& desc = session.rendererDesc().frame;
     fmt::print("{}\nDriver {}; commit {}\n", session.device().info().name, session.device().info().driver, commit());
     fmt::print("{}, {}x{}, filter {}, {} lights, {} visible; per tile {:.2f} lights, {:.2f} shadowed; {} frames each\n",
                session.settings().scene, desc.widthPx, desc.heightPx, session.settings().filter, s.lights.given,
@@ -168,7 +168,8 @@ static Json passesOf(const Measurement& measured, const Variant& variant) {
     for (const Variant::Row& row : variant.passes()) {
         Json& pass = passes[row.name];
         pass = toJson(row.milliseconds);
-        pass["drawing"] = row.drawing;
+        pass["phase"] = phaseName(row.phase);
+        pass["drawing"] = row.kind == RowKind::Drawing;
         if (const std::optional<Floor> floor = floorOf(measured, variant, row)) {
             pass["floor"] = {{"bytes", floor->need.bytes},
                              {"fetches", floor->need.fetches},

@@ -17,7 +17,8 @@ public:
 
     struct Row {
         std::string name;
-        bool drawing = false, statistics = false;
+        Phase phase = Phase::Host;
+        RowKind kind = RowKind::Compute;
         std::vector<double> milliseconds;
     };
     [[nodiscard]] const std::vector<Row>& passes() const { return passes_; }

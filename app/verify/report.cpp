@@ -66,7 +66,7 @@ Json describe(const Figures& f) {
 }
 
 void printVerified(const Session& session, const VerifyResult& result) {
-    const renderer::RendererDesc& desc = session.rendererDesc();
+    const renderer::FrameSettings& desc = session.rendererDesc().frame;
     fmt::print("{}, {}x{}, filter {}, {}: shadows against ray-traced truth\n\n", session.settings().scene, desc.widthPx,
                desc.heightPx, session.settings().filter, session.device().info().name);
     fmt::print("{:<30} {:>10} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8}\n", "Light", "pairs", "acne %", "leak %", "contact %",

@@ -69,8 +69,8 @@ std::vector<double> parseSweepNumbers(const std::string& text, const char* what,
     return numbers;
 }
 
-BiasSetting chosenSetting(const std::string& bias, const renderer::RendererDesc& desc) {
-    const renderer::HardwareBias& drawn = desc.shadowDrawing.bias;
+BiasSetting chosenSetting(const std::string& bias, const renderer::FrameSettings& settings) {
+    const renderer::HardwareBias& drawn = settings.drawing.bias;
     return {bias, static_cast<double>(drawn.constantFactor), static_cast<double>(drawn.slopeFactor)};
 }
 
@@ -85,11 +85,11 @@ std::vector<BiasSetting> settingsOfSweep(const std::string& chosen, const std::v
     return settings;
 }
 
-renderer::RendererDesc withBias(renderer::RendererDesc desc, const BiasSetting& setting) {
-    setBias(setting.bias, desc);
+renderer::FrameSettings withBias(renderer::FrameSettings settings, const BiasSetting& setting) {
+    setBias(setting.bias, settings);
     if (setting.bias == "hardware")
-        desc.shadowDrawing.bias = {static_cast<float>(setting.constant), static_cast<float>(setting.slope), 0.0f};
-    return desc;
+        settings.drawing.bias = {static_cast<float>(setting.constant), static_cast<float>(setting.slope), 0.0f};
+    return settings;
 }
 
 std::string nameOf(const BiasSetting& setting) {

@@ -14,7 +14,7 @@ struct BiasSetting {
     std::string bias;                    ///< as --bias has it
     double constant = 0.0, slope = 0.0;  ///< factors that shadowmaps are drawn with
 };
-BiasSetting chosenSetting(const std::string& bias, const renderer::RendererDesc& desc);
+BiasSetting chosenSetting(const std::string& bias, const renderer::FrameSettings& settings);
 
 struct SweptSetting {
     BiasSetting setting;
@@ -28,7 +28,7 @@ std::vector<double> parseSweepNumbers(const std::string& text, const char* what,
 std::vector<BiasSetting> settingsOfSweep(const std::string& chosen, const std::vector<double>& constants,
                                          const std::vector<double>& slopes);
 
-renderer::RendererDesc withBias(renderer::RendererDesc desc, const BiasSetting& setting);
+renderer::FrameSettings withBias(renderer::FrameSettings settings, const BiasSetting& setting);
 std::string nameOf(const BiasSetting& setting);
 
 /// Of the hardware settings (none is one of them), and how many times as many pairs it has wrong as the first setting.

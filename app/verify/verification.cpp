@@ -25,8 +25,8 @@ std::uint32_t sideOfSquare(std::uint32_t rays) {
     return side;
 }
 
-renderer::SubsurfaceRule ruleOf(const renderer::RendererDesc& desc) {
-    return {desc.shadowDrawing.subsurfaceFronts, static_cast<double>(desc.subsurfaceBiasMetres)};
+renderer::SubsurfaceRule ruleOf(const renderer::FrameSettings& desc) {
+    return {desc.drawing.subsurfaceFronts, static_cast<double>(desc.subsurfaceBiasMetres)};
 }
 
 bool sameView(const ShadowView& a, const ShadowView& b) {
@@ -42,14 +42,14 @@ Verification::Verification(const Session& session, const VerifyOptions& options,
       others_(std::move(others)),
       pose_(poseAt(session.scene(), options.settings.time)),
       camera_(posedCamera(session.scene(), pose_, session.camera())),
-      traced_(session.scene(), pose_, glm::dvec3(camera_.worldFromCamera[3]), ruleOf(session.rendererDesc())),
-      extent_{session.rendererDesc().widthPx, session.rendererDesc().heightPx},
-      renderer_(std::make_unique<renderer::Renderer>(session.device(), session.scene(), session.rendererDesc())) {
+      traced_(session.scene(), pose_, glm::dvec3(camera_.worldFromCamera[3]), ruleOf(session.rendererDesc().frame)),
+      extent_{session.rendererDesc().frame.widthPx, session.rendererDesc().frame.heightPx},
+      renderer_(session.device(), session.scene(), session.rendererDesc()) {
     camera_.node = renderer::kNone;
     drawFrom(camera_);
     for (const std::uint32_t index : wantedLights()) lights_.push_back({index, truthDescOf(index), {}});
     if (options.maps.empty()) return;
-    const renderer::HdrPicture linear = renderer_->readPicture();
+    const renderer::HdrPicture linear = renderer_.readPicture();
     const float exposure = session.scene().exposureEv100.value_or(renderer::automaticExposure(linear));
     maps_ = std::make_unique<VerifyMaps>(options.maps, renderer::toneMap(linear, exposure), soft());
 }
@@ -67,18 +67,15 @@ std::vector<std::uint32_t> Verification::wantedLights() const {
 }
 
 void Verification::drawFrom(const renderer::SceneCamera& camera) {
-    renderer_->renderFrame(camera, renderer::ShadowMode::Deferred, options_.settings.time);
-    receivers_ = receiversOf(traced_, camera, extent_.widthPx, extent_.heightPx, renderer_->readTriangleIds());
+    renderer_.renderFrame(camera, renderer::ShadowMode::Deferred, options_.settings.time);
+    receivers_ = receiversOf(traced_, camera, extent_.widthPx, extent_.heightPx, renderer_.readTriangleIds());
 }
 
-// Renderers follow each other: a device may not have memory for two.
 void Verification::drawSetting(std::size_t setting) {
     if (drawn_ == setting) return;
-    renderer_.reset();
-    const renderer::RendererDesc& chosen = session_.rendererDesc();
-    renderer_ = std::make_unique<renderer::Renderer>(session_.device(), session_.scene(),
-                                                     setting == 0 ? chosen : withBias(chosen, others_[setting - 1]));
-    renderer_->renderFrame(camera_, renderer::ShadowMode::Deferred, options_.settings.time);
+    const renderer::FrameSettings& chosen = session_.rendererDesc().frame;
+    renderer_.set(setting == 0 ? chosen : withBias(chosen, others_[setting - 1]));
+    renderer_.renderFrame(camera_, renderer::ShadowMode::Deferred, options_.settings.time);
     drawn_ = setting;
     checkShadowViews();
 }
@@ -86,7 +83,7 @@ void Verification::drawSetting(std::size_t setting) {
 // Biases are compared by shadowmaps of the same size, that see the same.
 void Verification::checkShadowViews() const {
     for (const TracedLight& light : lights_)
-        if (!std::ranges::equal(light.desc.views, renderer_->shadowViews(light.index), sameView))
+        if (!std::ranges::equal(light.desc.views, renderer_.shadowViews(light.index), sameView))
             throw std::runtime_error(fmt::format(
                 "The shadowmaps of light #{} changed with the depth bias; the sweep compares nothing.", light.index));
 }
@@ -94,8 +91,8 @@ void Verification::checkShadowViews() const {
 LightTruthDesc Verification::truthDescOf(std::uint32_t index) const {
     LightTruthDesc desc;
     desc.light = pose_.lights[index];
-    desc.views = renderer_->shadowViews(index);
-    desc.viewsOrigin = renderer_->frameOrigin();
+    desc.views = renderer_.shadowViews(index);
+    desc.viewsOrigin = renderer_.frameOrigin();
     desc.soft = soft();
     desc.softRaysPerSide = sideOfSquare(options_.rays);
     desc.subsetOf = options_.subset;
@@ -112,7 +109,8 @@ void Verification::say(const std::string& sentence, bool last) {
 
 VerifyResult Verification::run() {
     VerifyResult result;
-    if (!others_.empty()) result.sweep.push_back({chosenSetting(options_.settings.bias, session_.rendererDesc()), {}});
+    if (!others_.empty())
+        result.sweep.push_back({chosenSetting(options_.settings.bias, session_.rendererDesc().frame), {}});
     for (const BiasSetting& setting : others_) result.sweep.push_back({setting, {}});
     for (std::size_t next = 0; next < lights_.size();) {
         std::vector<TracedLight> some = traceSome(next);
@@ -148,7 +146,7 @@ renderer::LightFigures Verification::judge(TracedLight& light, const std::vector
 void Verification::judgeChosen(std::vector<TracedLight>& lights, VerifyResult& result) {
     drawSetting(0);
     for (TracedLight& light : lights) {
-        const std::vector<float> visibility = renderer_->readVisibility(light.index);
+        const std::vector<float> visibility = renderer_.readVisibility(light.index);
         VerifiedLight verified;
         verified.index = light.index;
         verified.name = light.desc.light.name;
@@ -171,7 +169,7 @@ void Verification::judgeOthers(std::vector<TracedLight>& lights, VerifyResult& r
     for (std::size_t i = 0; i < others_.size(); ++i) {
         drawSetting(i + 1);
         for (TracedLight& light : lights)
-            result.sweep[i + 1].figures += judge(light, renderer_->readVisibility(light.index));
+            result.sweep[i + 1].figures += judge(light, renderer_.readVisibility(light.index));
         say(fmt::format("Bias {} of {}: {}", i + 2, others_.size() + 1, nameOf(others_[i])), i + 1 == others_.size());
     }
 }
@@ -190,7 +188,7 @@ void Verification::measureFlicker(VerifyResult& result) {
             LightTruthDesc desc = truthDescOf(result.lights[i].index);
             desc.soft = false;
             meters[i].add(traceLight(traced_, receivers_, extent_, desc),
-                          renderer_->readVisibility(result.lights[i].index));
+                          renderer_.readVisibility(result.lights[i].index));
         }
         progress.step();
     }

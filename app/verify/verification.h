@@ -49,7 +49,7 @@ private:
     [[nodiscard]] renderer::LightFigures judge(TracedLight& light, const std::vector<float>& visibility) const;
     void measureFlicker(VerifyResult& result);
     void say(const std::string& sentence, bool last);
-    [[nodiscard]] bool soft() const { return session_.rendererDesc().filter == Filter::Pcss; }
+    [[nodiscard]] bool soft() const { return allSoft(session_.rendererDesc().frame.filters); }
 
     const Session& session_;
     const VerifyOptions& options_;
@@ -58,7 +58,7 @@ private:
     renderer::SceneCamera camera_;  // posed
     renderer::TracedScene traced_;
     renderer::TruthExtent extent_;
-    std::unique_ptr<renderer::Renderer> renderer_;
+    renderer::Renderer renderer_;
     std::size_t drawn_ = 0;  // 0: the chosen setting; else others_[drawn_ - 1]
     std::vector<renderer::TruthReceiver> receivers_;
     std::vector<TracedLight> lights_;   // without truth

@@ -75,7 +75,6 @@ int verify(const VerifyOptions& options) {
 void addVerifyCommand(CLI::App& app, Work& chosen) {
     CLI::App* command = app.add_subcommand("verify", "Compare the shadows of one frame with ray-traced truth");
     const auto options = std::make_shared<VerifyOptions>();
-    addSettings(*command, options->settings);
     command->add_option("--json", options->json, "All figures, a JSON file")->check(fileName());
     command->add_option("--maps", options->maps, "A folder for one picture per light: truth, result, errors")
         ->check([](const std::string& name) { return name.empty() ? "give a folder's name" : std::string(); });
@@ -103,6 +102,7 @@ void addVerifyCommand(CLI::App& app, Work& chosen) {
     command->add_option("--sweep-slopes", options->sweepSlopes, "Slope factors of the grid, parted by commas")
         ->needs(sweep)
         ->capture_default_str();
+    addSettings(*command, options->settings);
     command->callback([&chosen, options] { chosen = [options] { return verify(*options); }; });
 }
 

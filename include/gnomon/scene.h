@@ -9,6 +9,8 @@
 #include <limits>
 #include <span>
 
+#include "gnomon/settings.h"
+
 namespace gnomon {
 
 inline constexpr std::uint32_t kNoShadowViews = 0xFFFFFFFFu;
@@ -61,11 +63,19 @@ struct Light {
     float biasMetres = 0.002f;
     /// Multiplies the light's importance where more than 1024 lights compete.
     float priority = 1.0f;
-    /// Index of the light's first ShadowView (point lights: of six in a row, +X -X +Y -Y +Z -Z), or kNoShadowViews for
-    /// a light that casts no shadow. Directional lights: of cascadeCount in a row, from the nearest cascade on.
-    std::uint32_t firstShadowView = kNoShadowViews;
-    /// Directional lights with shadow views: 1 to 8.
-    std::uint32_t cascadeCount = 0;
+    /// Whether it casts a shadow, where it is given shadow views: FrameDesc::lightViews.
+    bool casts = true;
+    /// How its shadowmaps are read; one of ShadowSettings::filters.
+    Filter filter = Filter::Pcss;
+    /// Filter::Pcss: which of ShadowSettings::pcssPresets.
+    std::uint8_t pcssPreset = 0;
+};
+
+/// The shadow views of one light, in a row. Spots have one, point lights six (+X -X +Y -Y +Z -Z), directional lights
+/// one per cascade, 1 to 8, from the nearest on.
+struct LightShadowViews {
+    std::uint32_t first = kNoShadowViews;  ///< index into FrameDesc::shadowViews; kNoShadowViews: it casts nothing
+    std::uint32_t count = 0;
 };
 
 /// One view of a light, drawn by the host into a rectangle of one of its shadow atlases (D32 or D16, any age).
@@ -93,8 +103,7 @@ struct ViewInput {
     Camera camera;
     std::uint32_t widthPx = 0, heightPx = 0;         ///< active extent, at least 1x1
     std::uint32_t viewportXPx = 0, viewportYPx = 0;  ///< where it begins in the host's images
-    std::span<const Light> lights;
-    std::uint32_t shadowViewCount = 0;  ///< lights may refer to views below this
+    std::span<const Light> lights;                   ///< all of the scene's; read during the call only
 };
 
 }  // namespace gnomon

@@ -34,10 +34,6 @@ VkPipelineRasterizationStateCreateInfo rasterOf(const GraphicsPipelineDesc& desc
     raster.cullMode = desc.cull;
     raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
     raster.lineWidth = 1.0f;
-    raster.depthBiasEnable = desc.depthBiasConstant != 0.0f || desc.depthBiasSlope != 0.0f;
-    raster.depthBiasConstantFactor = desc.depthBiasConstant;
-    raster.depthBiasSlopeFactor = desc.depthBiasSlope;
-    raster.depthBiasClamp = desc.depthBiasClamp;
     return raster;
 }
 
@@ -53,6 +49,8 @@ VkPipelineDepthStencilStateCreateInfo depthOf(const GraphicsPipelineDesc& desc) 
 std::vector<VkDynamicState> dynamicStatesOf(const GraphicsPipelineDesc& desc) {
     std::vector<VkDynamicState> states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
     if (desc.dynamicCull) states.insert(states.end(), {VK_DYNAMIC_STATE_CULL_MODE, VK_DYNAMIC_STATE_FRONT_FACE});
+    if (desc.dynamicDepthBias)
+        states.insert(states.end(), {VK_DYNAMIC_STATE_DEPTH_BIAS_ENABLE, VK_DYNAMIC_STATE_DEPTH_BIAS});
     if (desc.dynamicDepthCompare) states.push_back(VK_DYNAMIC_STATE_DEPTH_COMPARE_OP);
     return states;
 }

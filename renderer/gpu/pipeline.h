@@ -76,7 +76,7 @@ struct GraphicsPipelineDesc {
     bool dynamicDepthCompare = false;
     VkCullModeFlags cull = VK_CULL_MODE_NONE;  ///< set by vkCmdSetCullMode and vkCmdSetFrontFace instead if dynamicCull
     bool dynamicCull = false;
-    float depthBiasConstant = 0.0f, depthBiasSlope = 0.0f, depthBiasClamp = 0.0f;
+    bool dynamicDepthBias = false;  ///< set by vkCmdSetDepthBiasEnable and vkCmdSetDepthBias; else none
 };
 
 /// Triangle lists without vertex attributes (the vertex shader pulls), dynamic viewport and scissor, no blending.

@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "renderer/lighting/lighting_pipelines.h"
+
 namespace gnomon::renderer {
 namespace {
 
@@ -15,6 +17,7 @@ constexpr VkDescriptorType kOwnTypes[] = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE};
 LightVisibility::LightVisibility(const Device& device, const Context& context, std::uint32_t widthPx,
                                  std::uint32_t heightPx)
     : device_(device),
+      context_(context),
       ownSetLayout_(makeSetLayout(device, kOwnTypes, VK_SHADER_STAGE_COMPUTE_BIT)),
       pool_(makeDescriptorPool(device, 1, kOwnTypes)),
       ownSet_(allocateSet(device, pool_, ownSetLayout_)),
@@ -27,20 +30,22 @@ LightVisibility::LightVisibility(const Device& device, const Context& context, s
     const VkDescriptorSetLayout sets[] = {context.listsSetLayout(), context.receiversSetLayout(),
                                           context.shadowmapsSetLayout(), ownSetLayout_};
     layout_ = makePipelineLayout(device, sets, VK_SHADER_STAGE_COMPUTE_BIT, sizeof(std::uint32_t));
-    const bool oneSize = device.info().minSubgroupSize == device.info().maxSubgroupSize;
-    pipeline_ = makeComputePipeline(device, kSpirv, layout_, context.specializationValues(),
-                                    oneSize ? 0 : context.subgroupSize());
     writeImage(device, ownSet_, 0, kOwnTypes[0], picture_.view(), VK_NULL_HANDLE, VK_IMAGE_LAYOUT_GENERAL);
 }
 
-std::vector<float> LightVisibility::read(const View& view, std::uint32_t light) {
+std::vector<float> LightVisibility::read(const View& view, const ShadowSettings& settings, std::uint32_t light,
+                                         std::uint32_t widthPx, std::uint32_t heightPx) {
+    const auto values = context_.specialization(settings).values;
+    Pipeline& pipeline = pipelines_[values];
+    if (pipeline == VK_NULL_HANDLE)
+        pipeline = makeComputePipeline(device_, kSpirv, layout_, values, requiredSubgroupSize(device_, context_));
     const VkCommandBuffer c = commands_.begin();
     const VkImageMemoryBarrier2 barrier =
         imageBarrier(picture_, VK_IMAGE_LAYOUT_UNDEFINED, {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE},
                      VK_IMAGE_LAYOUT_GENERAL, access::kComputeWrite);
     recordBarriers(c, std::span(&barrier, 1));
     const VkDescriptorSet sets[] = {view.listsSet(), view.receiversSet(), view.shadowmapsSet(), ownSet_};
-    vkCmdBindPipeline(c, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
+    vkCmdBindPipeline(c, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     vkCmdBindDescriptorSets(c, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 4, sets, 0, nullptr);
     vkCmdPushConstants(c, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(light), &light);
     const VkExtent2D tiles = view.tileCounts();
@@ -48,8 +53,10 @@ std::vector<float> LightVisibility::read(const View& view, std::uint32_t light) 
     commands_.submit();
     commands_.wait();
     const std::vector<std::uint8_t> bytes = readImage(device_, picture_, VK_IMAGE_LAYOUT_GENERAL);
-    std::vector<float> visibility(bytes.size() / sizeof(float));
-    std::memcpy(visibility.data(), bytes.data(), bytes.size());
+    const std::size_t row = picture_.desc().width;
+    std::vector<float> visibility(std::size_t{widthPx} * heightPx);
+    for (std::size_t y = 0; y < heightPx; ++y)
+        std::memcpy(&visibility[y * widthPx], bytes.data() + y * row * sizeof(float), widthPx * sizeof(float));
     return visibility;
 }
 

@@ -4,7 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "gnomon/tiled_shadows.h"
+#include <array>
+#include <map>
+
+#include "gnomon/view.h"
 #include "renderer/gpu/pipeline.h"
 #include "renderer/gpu/resources.h"
 
@@ -21,13 +24,16 @@ public:
 
     /// Of the light with this index among those given to the view's last frame, which must have had phase 4 and have
     /// finished. Per pixel 0 to 1 or kNotReached. Waits for the device.
-    [[nodiscard]] std::vector<float> read(const View& view, std::uint32_t light);
+    /// `settings`: that frame's. `widthPx` and `heightPx`: its active extent, at most what this was made for.
+    [[nodiscard]] std::vector<float> read(const View& view, const ShadowSettings& settings, std::uint32_t light,
+                                          std::uint32_t widthPx, std::uint32_t heightPx);
 
 private:
     const Device& device_;
+    const Context& context_;
     SetLayout ownSetLayout_;
     PipelineLayout layout_;
-    Pipeline pipeline_;
+    std::map<std::array<std::uint32_t, SpecializationValues::kCount>, Pipeline> pipelines_;
     DescriptorPool pool_;
     VkDescriptorSet ownSet_ = VK_NULL_HANDLE;
     GpuImage picture_;

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "renderer/gpu/error.h"
+#include "renderer/gpu/timeline_scope.h"
 #include "renderer/lighting/lighting_data.h"
 
 namespace gnomon::renderer {
@@ -31,16 +32,8 @@ std::span<const std::byte> bytesOf(const std::vector<T>& values) {
 
 }  // namespace
 
-Lighting::Lighting(const Device& device, const Context& context, const Scene& scene, const GBuffer& gbuffer,
-                   const InlineVariant& inlineVariant)
-    : device_(device), pipelines_(device, context, inlineVariant) {
-    const VkExtent2D extent = gbuffer.extent();
-    picture_ = GpuImage(
-        device, {.name = "picture",
-                 .format = VK_FORMAT_R16G16B16A16_SFLOAT,
-                 .width = extent.width,
-                 .height = extent.height,
-                 .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+Lighting::Lighting(const Device& device, const Context& context, const Scene& scene, const GBuffer& gbuffer)
+    : device_(device), pipelines_(device, context) {
     std::vector<HostLight> lights(std::max<std::size_t>(scene.lights.size(), 1));
     std::transform(scene.lights.begin(), scene.lights.end(), lights.begin(), hostLightOf);
     hostLights_ = Buffer(device, "host_lights", lights.size() * sizeof(HostLight),
@@ -54,12 +47,24 @@ Lighting::Lighting(const Device& device, const Context& context, const Scene& sc
     uploader.buffer(hostLights_, bytesOf(lights));
     uploader.buffer(sceneConstants_, bytesOf(constants));
     uploader.finish();
-    createSet(gbuffer);
+    pool_ = makeDescriptorPool(device_, 1, kLightingSetTypes);
+    ownSet_ = allocateSet(device_, pool_, pipelines_.ownSet());
+    resize(gbuffer);
 }
 
-void Lighting::createSet(const GBuffer& gbuffer) {
-    pool_ = makeDescriptorPool(device_, 1, kLightingSetTypes);
-    ownSet_ = allocateSet(device_, pool_, pipelines_.ownSet);
+void Lighting::resize(const GBuffer& gbuffer) {
+    const VkExtent2D extent = gbuffer.extent();
+    picture_ = GpuImage(
+        device_, {.name = "picture",
+                  .format = VK_FORMAT_R16G16B16A16_SFLOAT,
+                  .width = extent.width,
+                  .height = extent.height,
+                  .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    pictureReady_ = false;
+    writeSet(gbuffer);
+}
+
+void Lighting::writeSet(const GBuffer& gbuffer) {
     const GBuffer::Channel channels[] = {GBuffer::BaseColour, GBuffer::Normal, GBuffer::MaterialData,
                                          GBuffer::Emissive};
     for (std::uint32_t i = 0; i < std::size(channels); ++i) {
@@ -81,34 +86,44 @@ void Lighting::beginPicture(VkCommandBuffer commands) {
     recordBarriers(commands, std::span(&barrier, 1));
 }
 
-void Lighting::bind(VkCommandBuffer commands, const View& view, VkPipeline pipeline, VkPipelineLayout layout,
-                    bool shadowmaps) {
+void Lighting::bind(VkCommandBuffer commands, const View& view, LightingKind kind, VkPipeline pipeline) {
     const VkDescriptorSet first[] = {view.listsSet(), view.receiversSet(), view.shadowmapsSet()};
+    const VkPipelineLayout layout = pipelines_.layoutOf(kind);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, shadowmaps ? 3 : 2, first, 0, nullptr);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, kind == LightingKind::Deferred ? 2 : 3,
+                            first, 0, nullptr);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 3, 1, &ownSet_, 0, nullptr);
 }
 
-void Lighting::recordDeferred(VkCommandBuffer commands, const View& view, GpuTimer* timer) {
+void Lighting::recordDeferred(VkCommandBuffer commands, const View& view, const ShadowSettings& settings,
+                              Timeline* timeline) {
     beginPicture(commands);
     const VkExtent2D tiles = view.tileCounts();
+    const VkPipeline main = pipelines_.get(LightingKind::Deferred, settings);
+    const VkPipeline evaluate = pipelines_.get(LightingKind::Evaluate, settings);
     {
-        const GpuScope scope(timer, commands, "lighting");
-        bind(commands, view, pipelines_.deferred, pipelines_.mainLayout, false);
+        const TimelineScope scope(device_, timeline, commands, "lighting", Phase::Lighting, RowKind::Compute);
+        bind(commands, view, LightingKind::Deferred, main);
         vkCmdDispatch(commands, tiles.width, tiles.height, 1);
     }
-    const GpuScope scope(timer, commands, "lighting_evaluate");
-    bind(commands, view, pipelines_.evaluate, pipelines_.evaluateLayout, true);
+    const TimelineScope scope(device_, timeline, commands, "lighting_evaluate", Phase::Lighting, RowKind::Compute);
+    bind(commands, view, LightingKind::Evaluate, evaluate);
     vkCmdDispatchIndirect(commands, view.evaluateTilesBuffer(), view.evaluateCommandOffset());
 }
 
-void Lighting::recordInline(VkCommandBuffer commands, const View& view, LightingVariant variant, GpuTimer* timer) {
+void Lighting::recordInline(VkCommandBuffer commands, const View& view, LightingKind kind,
+                            const ShadowSettings& settings, const InlineVariant& variant, Timeline* timeline) {
     beginPicture(commands);
     const VkExtent2D tiles = view.tileCounts();
-    const bool shadowed = variant == LightingVariant::Inline;
-    const GpuScope scope(timer, commands, shadowed ? "lighting_inline" : "lighting_unshadowed");
-    bind(commands, view, shadowed ? pipelines_.inlined : pipelines_.unshadowed, pipelines_.evaluateLayout, true);
+    const VkPipeline pipeline = pipelines_.get(kind, settings, variant);
+    const char* name = kind == LightingKind::Inline ? "lighting_inline" : "lighting_unshadowed";
+    const TimelineScope scope(device_, timeline, commands, name, Phase::Lighting, RowKind::Compute);
+    bind(commands, view, kind, pipeline);
     vkCmdDispatch(commands, tiles.width, tiles.height, 1);
+}
+
+void Lighting::prepare(LightingKind kind, const ShadowSettings& settings, const InlineVariant& variant) {
+    pipelines_.get(kind, settings, variant);
 }
 
 std::vector<MemoryRow> Lighting::memoryRows() const {

@@ -4,41 +4,41 @@
 #include <span>
 #include <vector>
 
-#include "gnomon/tiled_shadows.h"
+#include "gnomon/view.h"
 #include "renderer/gbuffer/gbuffer.h"
 #include "renderer/gpu/resources.h"
-#include "renderer/gpu/timer.h"
 #include "renderer/lighting/lighting_pipelines.h"
 #include "scene/scene.h"
 
 namespace gnomon::renderer {
 
-enum class LightingVariant : std::uint8_t {
-    Inline,      ///< shadows evaluated in the lighting shader
-    Unshadowed,  ///< every light lit
-};
-
 /// Writes a linear R16G16B16A16_SFLOAT picture of the G-buffer's extent. Not thread safe.
 class Lighting {
 public:
-    /// Uploads the scene's light data.
-    Lighting(const Device& device, const Context& context, const Scene& scene, const GBuffer& gbuffer,
-             const InlineVariant& inlineVariant);
+    /// Uploads the scene's light data. Throws GpuError.
+    Lighting(const Device& device, const Context& context, const Scene& scene, const GBuffer& gbuffer);
+    /// After the G-buffer was resized; the device must have finished with the old picture.
+    void resize(const GBuffer& gbuffer);
 
     /// After View::recordGenerateShadows(): one dispatch over all tiles, and an indirect one for tiles to be evaluated.
-    void recordDeferred(VkCommandBuffer commands, const View& view, GpuTimer* timer);
-    /// After View::recordFindLightsAccurate().
-    void recordInline(VkCommandBuffer commands, const View& view, LightingVariant variant, GpuTimer* timer);
+    /// `settings`: the frame's. Throws GpuError.
+    void recordDeferred(VkCommandBuffer commands, const View& view, const ShadowSettings& settings, Timeline* timeline);
+    /// After View::recordFindLightsAccurate(). Inline or Unshadowed. Throws GpuError.
+    void recordInline(VkCommandBuffer commands, const View& view, LightingKind kind, const ShadowSettings& settings,
+                      const InlineVariant& variant, Timeline* timeline);
 
+    /// Makes the pipelines of a way to shade that do not exist yet. Throws GpuError.
+    void prepare(LightingKind kind, const ShadowSettings& settings, const InlineVariant& variant);
+    /// Pipelines made so far.
+    [[nodiscard]] std::size_t pipelineCount() const { return pipelines_.count(); }
     /// In GENERAL between frames.
     [[nodiscard]] const GpuImage& picture() const { return picture_; }
     [[nodiscard]] std::vector<MemoryRow> memoryRows() const;
 
 private:
-    void createSet(const GBuffer& gbuffer);
+    void writeSet(const GBuffer& gbuffer);
     void beginPicture(VkCommandBuffer commands);
-    void bind(VkCommandBuffer commands, const View& view, VkPipeline pipeline, VkPipelineLayout layout,
-              bool shadowmaps);
+    void bind(VkCommandBuffer commands, const View& view, LightingKind kind, VkPipeline pipeline);
 
     const Device& device_;
     LightingPipelines pipelines_;

@@ -18,28 +18,63 @@ constexpr std::uint32_t kInlineSpirv[] = {
 #include "lighting_inline.spv.h"
 };
 
+// What a kind's shader does not look at is the same for all settings.
+SpecializationValues valuesOf(LightingKind kind, const Context& context, const ShadowSettings& settings) {
+    SpecializationValues out = context.specialization(settings);
+    if (kind == LightingKind::Deferred) {
+        const SpecializationValues all = out;
+        out = {};
+        for (const std::uint32_t id :
+             {gpu::kSpecSubgroupSize, gpu::kSpecVisibilityBits, gpu::kSpecDepthBias, gpu::kSpecFacedAwayIsDark})
+            out.values[id] = all.values[id];
+    }
+    if (kind == LightingKind::Unshadowed) out.values[gpu::kSpecFilters] = 0;
+    return out;
+}
+
+std::span<const std::uint32_t> spirvOf(LightingKind kind) {
+    switch (kind) {
+        case LightingKind::Deferred:
+            return kDeferredSpirv;
+        case LightingKind::Evaluate:
+            return kEvaluateSpirv;
+        case LightingKind::Inline:
+        case LightingKind::Unshadowed:
+            break;
+    }
+    return kInlineSpirv;
+}
+
 }  // namespace
 
-LightingPipelines::LightingPipelines(const Device& device, const Context& context, const InlineVariant& inlineVariant)
-    : ownSet(makeSetLayout(device, kLightingSetTypes, VK_SHADER_STAGE_COMPUTE_BIT)),
-      emptySet(makeSetLayout(device, {}, VK_SHADER_STAGE_COMPUTE_BIT)) {
-    const VkDescriptorSetLayout main[] = {context.listsSetLayout(), context.receiversSetLayout(), emptySet, ownSet};
-    const VkDescriptorSetLayout withShadowmaps[] = {context.listsSetLayout(), context.receiversSetLayout(),
-                                                    context.shadowmapsSetLayout(), ownSet};
-    mainLayout = makePipelineLayout(device, main);
-    evaluateLayout = makePipelineLayout(device, withShadowmaps);
-    std::vector<std::uint32_t> constants(gpu::kSpecFirstFree + 2, 0u);
-    std::ranges::copy(context.specializationValues(), constants.begin());
-    constants[gpu::kSpecFirstFree] = inlineVariant.quantises ? 1u : 0u;
-    constants[gpu::kSpecFirstFree + 1] = inlineVariant.walksMasks ? 1u : 0u;
-    // A device with one size need not, and perhaps cannot, be asked for it.
+std::uint32_t requiredSubgroupSize(const Device& device, const Context& context) {
     const bool oneSize = device.info().minSubgroupSize == device.info().maxSubgroupSize;
-    const std::uint32_t lanes = oneSize ? 0 : context.subgroupSize();
-    deferred = makeComputePipeline(device, kDeferredSpirv, mainLayout, constants, lanes);
-    evaluate = makeComputePipeline(device, kEvaluateSpirv, evaluateLayout, constants, lanes);
-    inlined = makeComputePipeline(device, kInlineSpirv, evaluateLayout, constants, lanes);
-    constants[gpu::kSpecProvider] = gpu::kProviderOff;
-    unshadowed = makeComputePipeline(device, kInlineSpirv, evaluateLayout, constants, lanes);
+    return oneSize ? 0 : context.subgroupSize();
+}
+
+LightingPipelines::LightingPipelines(const Device& device, const Context& context)
+    : device_(device),
+      context_(context),
+      ownSet_(makeSetLayout(device, kLightingSetTypes, VK_SHADER_STAGE_COMPUTE_BIT)),
+      emptySet_(makeSetLayout(device, {}, VK_SHADER_STAGE_COMPUTE_BIT)) {
+    const VkDescriptorSetLayout main[] = {context.listsSetLayout(), context.receiversSetLayout(), emptySet_, ownSet_};
+    const VkDescriptorSetLayout withShadowmaps[] = {context.listsSetLayout(), context.receiversSetLayout(),
+                                                    context.shadowmapsSetLayout(), ownSet_};
+    mainLayout_ = makePipelineLayout(device, main);
+    evaluateLayout_ = makePipelineLayout(device, withShadowmaps);
+}
+
+VkPipeline LightingPipelines::get(LightingKind kind, const ShadowSettings& settings, const InlineVariant& variant) {
+    std::vector<std::uint32_t> constants(gpu::kSpecFirstFree + 2, 0u);
+    std::ranges::copy(valuesOf(kind, context_, settings).values, constants.begin());
+    const bool inlined = kind == LightingKind::Inline || kind == LightingKind::Unshadowed;
+    constants[gpu::kSpecFirstFree] = inlined && variant.quantises ? 1u : 0u;
+    constants[gpu::kSpecFirstFree + 1] = inlined && variant.walksMasks ? 1u : 0u;
+    Pipeline& pipeline = pipelines_[{kind, constants}];
+    if (pipeline == VK_NULL_HANDLE)
+        pipeline = makeComputePipeline(device_, spirvOf(kind), layoutOf(kind), constants,
+                                       requiredSubgroupSize(device_, context_));
+    return pipeline;
 }
 
 }  // namespace gnomon::renderer

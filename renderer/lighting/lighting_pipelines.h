@@ -2,7 +2,10 @@
 // The lighting pipelines and their layouts, apart from the images they work on: so they can also be made, and looked
 // at, on a device that can only compile.
 
-#include "gnomon/tiled_shadows.h"
+#include <map>
+#include <tuple>
+
+#include "gnomon/context.h"
 #include "renderer/gpu/pipeline.h"
 
 namespace gnomon::renderer {
@@ -13,21 +16,48 @@ inline constexpr VkDescriptorType kLightingSetTypes[] = {
     VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
     VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER};
 
+enum class LightingKind : std::uint8_t {
+    Deferred,    ///< reads final lists and slots; no shadowmap
+    Evaluate,    ///< the second pipeline, for tiles in which a slot or list space was missing
+    Inline,      ///< the paper's "before": shadows evaluated in the lighting shader
+    Unshadowed,  ///< every light lit
+};
+
 /// How the inline pipeline is compiled.
 struct InlineVariant {
-    bool quantises = true;   ///< visibility has the bits of a slot
-    bool walksMasks = true;  ///< tiles without list space are shaded too; costs registers
+    bool quantises = true;  ///< visibility has the bits of a slot; off: to measure what they cost
+    /// Tiles without list space are shaded too, which costs registers. Off: their lights are left out
+    /// (FrameStatistics::listOverflowTiles counts them), for measurements of the fastest inline shading.
+    bool walksMasks = true;
+    bool operator==(const InlineVariant&) const = default;
 };
 
-struct LightingPipelines {
+/// Pipelines are made when they are first needed, and kept. Not thread safe.
+class LightingPipelines {
+public:
+    /// The context must outlive this. Throws GpuError.
+    LightingPipelines(const Device& device, const Context& context);
+
     /// Throws GpuError.
-    LightingPipelines(const Device& device, const Context& context, const InlineVariant& inlineVariant);
+    VkPipeline get(LightingKind kind, const ShadowSettings& settings, const InlineVariant& variant = {});
+    [[nodiscard]] VkPipelineLayout layoutOf(LightingKind kind) const {
+        return kind == LightingKind::Deferred ? mainLayout_ : evaluateLayout_;
+    }
+    [[nodiscard]] VkDescriptorSetLayout ownSet() const { return ownSet_; }
+    [[nodiscard]] std::size_t count() const { return pipelines_.size(); }
 
-    SetLayout ownSet, emptySet;
-    PipelineLayout mainLayout;      // without the set of the shadowmaps
-    PipelineLayout evaluateLayout;  // with it
-    Pipeline deferred;              // mainLayout; all others evaluateLayout
-    Pipeline evaluate, inlined, unshadowed;
+private:
+    const Device& device_;
+    const Context& context_;
+    SetLayout ownSet_, emptySet_;
+    PipelineLayout mainLayout_;      // without the set of the shadowmaps
+    PipelineLayout evaluateLayout_;  // with it
+    using Key = std::tuple<LightingKind, std::vector<std::uint32_t>>;
+    std::map<Key, Pipeline> pipelines_;
 };
+
+/// What pipelines that include the library's shaders are made with: 0, where a device has one subgroup size and need
+/// not, and perhaps cannot, be asked for it.
+std::uint32_t requiredSubgroupSize(const Device& device, const Context& context);
 
 }  // namespace gnomon::renderer

@@ -8,7 +8,6 @@
 #include "gpu_interface/numbers.h"
 #include "renderer/gpu/pipeline.h"
 #include "renderer/gpu/resources.h"
-#include "renderer/gpu/timer.h"
 
 namespace gnomon::renderer {
 namespace {
@@ -40,21 +39,35 @@ void recordWait(VkCommandBuffer commands) {
 
 class Stopwatch {
 public:
-    explicit Stopwatch(const Device& device) : device_(device), timer_(device, 1) {}
+    explicit Stopwatch(const Device& device) : device_(device) {
+        if (device.timestampPeriodNs() == 0.0)
+            throw GpuError("'" + device.info().name + "' has no timestamps to measure with.");
+        VkQueryPoolCreateInfo info = {VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+        info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+        info.queryCount = 2;
+        check(vkCreateQueryPool(device.handle(), &info, nullptr, &queries_), "creating a query pool");
+    }
+    ~Stopwatch() { vkDestroyQueryPool(device_.handle(), queries_, nullptr); }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
 
     double milliseconds(const std::function<void(VkCommandBuffer)>& record) {
-        const std::uint64_t frame = frame_++;
+        constexpr VkPipelineStageFlags2 kAll = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
         device_.submitAndWait([&](VkCommandBuffer commands) {
-            timer_.beginFrame(commands, frame);
-            const GpuScope scope(&timer_, commands, "rate");
+            vkCmdResetQueryPool(commands, queries_, 0, 2);
+            vkCmdWriteTimestamp2(commands, kAll, queries_, 0);
             // A software device may put timestamps off until something waits.
             recordWait(commands);
             record(commands);
             recordWait(commands);
+            vkCmdWriteTimestamp2(commands, kAll, queries_, 1);
         });
-        const std::vector<GpuTime> times = timer_.times(frame);
-        if (times.empty()) throw GpuError("'" + device_.info().name + "' has no timestamps to measure with.");
-        return times.front().milliseconds;
+        std::uint64_t ticks[2] = {};
+        check(vkGetQueryPoolResults(device_.handle(), queries_, 0, 2, sizeof(ticks), ticks, sizeof(ticks[0]),
+                                    VK_QUERY_RESULT_64_BIT),
+              "reading timestamps");
+        return static_cast<double>((ticks[1] - ticks[0]) & device_.timestampMask()) * device_.timestampPeriodNs() *
+               1e-6;
     }
     double best(const std::function<void(VkCommandBuffer)>& record) {
         double least = milliseconds(record);
@@ -64,8 +77,7 @@ public:
 
 private:
     const Device& device_;
-    GpuTimer timer_;
-    std::uint64_t frame_ = 0;
+    VkQueryPool queries_ = VK_NULL_HANDLE;
 };
 
 // Some times any cache, but little enough for a software device, whose memory is everybody's.

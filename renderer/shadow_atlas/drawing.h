@@ -18,6 +18,8 @@ struct ShadowDrawing {
     /// Off: closed casters that light passes through (subsurface, not double-sided) are drawn without the faces that
     /// look at the light, so that they do not shadow themselves. Source: the paper, section 4.2.
     bool subsurfaceFronts = false;
+
+    bool operator==(const ShadowDrawing&) const = default;
 };
 
 }  // namespace gnomon::renderer

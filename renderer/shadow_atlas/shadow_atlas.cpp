@@ -36,15 +36,14 @@ std::uint32_t ShadowAtlasImage::defaultSizePx(const Device& device, std::uint32_
 
 ShadowAtlasImage::ShadowAtlasImage(const Device& device, const GpuScene& scene, std::uint32_t sizePx,
                                    std::uint32_t layers, const ShadowDrawing& drawing)
-    : device_(device), sizePx_(sizePx), subsurfaceFronts_(drawing.subsurfaceFronts) {
+    : device_(device), sizePx_(sizePx) {
     if (!std::has_single_bit(sizePx)) throw GpuError("The shadow atlas' side must be a power of two.");
     const VkPhysicalDeviceLimits& limits = device.limits();
     if (sizePx > std::min(limits.maxFramebufferWidth, limits.maxFramebufferHeight)) {
         throw GpuError("'" + device.info().name + "' draws at most " + std::to_string(limits.maxFramebufferWidth) +
                        " pixels wide; choose a smaller shadow atlas.");
     }
-    if (drawing.bias.clamp != 0.0f && device.features().depthBiasClamp == VK_FALSE)
-        throw GpuError("'" + device.info().name + "' cannot clamp a depth bias; leave the clamp out.");
+    setDrawing(drawing);
     ImageDesc desc;
     desc.name = "shadow atlas";
     desc.format = kFormat;
@@ -73,14 +72,19 @@ ShadowAtlasImage::ShadowAtlasImage(const Device& device, const GpuScene& scene, 
     pipeline.layout = layout_;
     pipeline.depthFormat = kFormat;
     pipeline.dynamicCull = true;
-    // Reversed Z: farther from the light is less.
-    pipeline.depthBiasConstant = -drawing.bias.constantFactor;
-    pipeline.depthBiasSlope = -drawing.bias.slopeFactor;
-    pipeline.depthBiasClamp = -drawing.bias.clamp;
+    pipeline.dynamicDepthBias = true;
     opaque_ = makeGraphicsPipeline(device, pipeline);
     pipeline.vertexSpirv = kMaskedVertexSpirv;
     pipeline.fragmentSpirv = kMaskedFragmentSpirv;
     masked_ = makeGraphicsPipeline(device, pipeline);
+}
+
+void ShadowAtlasImage::setDrawing(const ShadowDrawing& drawing) {
+    if (drawing.bias.clamp != 0.0f && device_.features().depthBiasClamp == VK_FALSE)
+        throw GpuError("'" + device_.info().name + "' cannot clamp a depth bias; leave the clamp out.");
+    if (drawing_ == drawing) return;
+    drawing_ = drawing;
+    drawn_.clear();
 }
 
 ShadowAtlasImage::Key ShadowAtlasImage::keyOf(const ShadowLight& light, const PlannedView& view) {
@@ -172,7 +176,7 @@ void ShadowAtlasImage::drawView(VkCommandBuffer commands, const GpuScene& scene,
             const VkDescriptorSet set = scene.materialSet(material);
             vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 1, 1, &set, 0, nullptr);
         }
-        const bool frontsLeftOut = !subsurfaceFronts_ && traits.subsurface && !traits.doubleSided;
+        const bool frontsLeftOut = !drawing_.subsurfaceFronts && traits.subsurface && !traits.doubleSided;
         vkCmdSetCullMode(commands, frontsLeftOut ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_NONE);
         vkCmdSetFrontFace(commands,
                           item.mirrored != mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
@@ -201,6 +205,10 @@ void ShadowAtlasImage::drawLayer(VkCommandBuffer commands, const GpuScene& scene
     const VkDescriptorSet sceneSet = scene.sceneSet();
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &sceneSet, 0, nullptr);
     vkCmdBindIndexBuffer(commands, scene.indexBuffer(), 0, VK_INDEX_TYPE_UINT32);
+    const HardwareBias& bias = drawing_.bias;
+    vkCmdSetDepthBiasEnable(commands, bias.none() ? VK_FALSE : VK_TRUE);
+    // Reversed Z: farther from the light is less.
+    vkCmdSetDepthBias(commands, -bias.constantFactor, -bias.clamp, -bias.slopeFactor);
     for (const Task& task : tasks_) {
         if (task.view->layer == layer) drawView(commands, scene, task, statistics);
     }

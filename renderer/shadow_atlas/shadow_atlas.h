@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "gnomon/tiled_shadows.h"
+#include "gnomon/view.h"
 #include "renderer/gpu/gpu_scene.h"
 #include "renderer/shadow_atlas/drawing.h"
 #include "renderer/shadow_atlas/plan.h"
@@ -34,6 +34,10 @@ public:
     ShadowAtlasImage(const Device& device, const GpuScene& scene, std::uint32_t sizePx, std::uint32_t layers = 1,
                      const ShadowDrawing& drawing = {});
 
+    /// How casters are drawn from now on; if that is another way than before, everything is drawn again. Throws
+    /// GpuError where the device cannot.
+    void setDrawing(const ShadowDrawing& drawing);
+    [[nodiscard]] const ShadowDrawing& drawing() const { return drawing_; }
     /// Finds what changed: a view is drawn again if its light or its rectangle changed, or if something moved in its
     /// volume; said in the plan's views as ShadowView::changed. `lights` is what the plan was made from. After
     /// GpuScene::recordTransforms() with the plan's origin. The plan must stay where it is until record().
@@ -75,7 +79,7 @@ private:
 
     const Device& device_;
     std::uint32_t sizePx_;
-    bool subsurfaceFronts_;
+    ShadowDrawing drawing_;
     GpuImage image_;
     PipelineLayout layout_;
     Pipeline opaque_, masked_;

@@ -14,6 +14,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define GNOMON_LISTS_ACCESS
 #include "vulkan/work_group.glsl"
+#include "gpu_interface/working_set.glsl"
 #include "find_lights_approximate/froxel.glsl"
 #include "shading/candidates.glsl"
 

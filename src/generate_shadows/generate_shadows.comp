@@ -12,7 +12,8 @@
 #extension GL_GOOGLE_include_directive : require
 #define GNOMON_LISTS_ACCESS
 #include "vulkan/work_group.glsl"
-#include "generate_shadows/visibility.glsl"
+#include "gpu_interface/working_set.glsl"
+#include "visibility/visibility.glsl"
 
 // The lights that are evaluated together: four, or eight with slots of 4 bits; one field of a word each.
 const uint kBits = kVisibilityBits;

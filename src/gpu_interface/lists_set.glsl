@@ -1,6 +1,6 @@
-// The set of the lists: frame constants, lights and everything that phases 1 to 4 leave for the lighting.
-// A host defines GNOMON_LISTS_SET before the first include if set 0 is taken. The library's own passes, which write,
-// define GNOMON_LISTS_ACCESS as nothing.
+// The set of the lists: all that lighting, EVALUATE and forward shaders read: frame constants, lights, and what phases 1
+// to 4 leave for them. A host defines GNOMON_LISTS_SET before the first include if set 0 is taken. The library's own
+// passes, which write, define GNOMON_LISTS_ACCESS as nothing.
 #ifndef GNOMON_GPU_INTERFACE_LISTS_SET_GLSL
 #define GNOMON_GPU_INTERFACE_LISTS_SET_GLSL
 
@@ -9,7 +9,7 @@
 #include "gpu_interface/structs.h"
 
 #ifndef GNOMON_LISTS_SET
-#define GNOMON_LISTS_SET 0
+#define GNOMON_LISTS_SET kSetLists
 #endif
 #ifndef GNOMON_LISTS_ACCESS
 #define GNOMON_LISTS_ACCESS readonly
@@ -26,7 +26,6 @@ GNOMON_LISTS_BUFFER(kBindTileGroupLightMasks, GNOMON_LISTS_ACCESS) TileGroupLigh
 };
 GNOMON_LISTS_BUFFER(kBindTileDepthRanges, GNOMON_LISTS_ACCESS) TileDepthRangesBlock { vec2 tileDepthRanges[]; };
 GNOMON_LISTS_BUFFER(kBindTileLightSlotIds, GNOMON_LISTS_ACCESS) TileLightSlotIdsBlock { uint tileLightSlotIds[]; };
-GNOMON_LISTS_BUFFER(kBindApproximateCounts, GNOMON_LISTS_ACCESS) ApproximateCountsBlock { uint approximateCounts[]; };
 GNOMON_LISTS_BUFFER(kBindEarlyList, GNOMON_LISTS_ACCESS) EarlyListBlock { uint earlyList[]; };
 GNOMON_LISTS_BUFFER(kBindEarlyCounts, GNOMON_LISTS_ACCESS) EarlyCountsBlock { uint earlyCounts[]; };
 GNOMON_LISTS_BUFFER(kBindFinalList, GNOMON_LISTS_ACCESS) FinalListBlock { uint finalList[]; };
@@ -36,7 +35,6 @@ GNOMON_LISTS_BUFFER(kBindEvaluateTiles, GNOMON_LISTS_ACCESS) EvaluateTilesBlock 
     GpuEvaluateHead evaluateHead;
     uint evaluateTiles[];
 };
-GNOMON_LISTS_BUFFER(kBindCounters, GNOMON_LISTS_ACCESS) CountersBlock { GpuCounters counters; };
 
 uint tileIndexOf(uvec2 tile) { return tile.y * frame.tileCounts.x + tile.x; }
 uint tileGroupIndexOf(uvec2 tile) {

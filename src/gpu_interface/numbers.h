@@ -66,7 +66,7 @@ GNOMON_CONSTANT GNOMON_UINT kLightTypeMask = 3u;
 GNOMON_CONSTANT GNOMON_UINT kLightCastsBit = 4u;
 // The shadow lets some light through, here or farther away: faces that look away may not be taken for dark.
 GNOMON_CONSTANT GNOMON_UINT kLightShadowFadesBit = 8u;
-// Directional lights: number of cascades.
+// Bits 4 to 7: filter and PCSS preset, see below. Directional lights: number of cascades.
 GNOMON_CONSTANT GNOMON_UINT kLightCascadesShift = 8u;
 GNOMON_CONSTANT GNOMON_UINT kLightCascadesMask = 0xFu;
 // shadowView of a light that casts no shadow.
@@ -95,10 +95,17 @@ GNOMON_CONSTANT GNOMON_UINT kMaxPcssTaps = 64u;
 GNOMON_CONSTANT GNOMON_UINT kMaxPcssRadiusPx = 48u;
 
 // --- Visibility providers --------------------------------------------------------------------------------------------
-GNOMON_CONSTANT GNOMON_UINT kProviderHard = 0u;
-GNOMON_CONSTANT GNOMON_UINT kProviderPcf = 1u;
-GNOMON_CONSTANT GNOMON_UINT kProviderOff = 2u;  // every light lit everywhere: the price of the lists alone
-GNOMON_CONSTANT GNOMON_UINT kProviderPcss = 3u;
+// A light's filter, in its typeAndFlags; a set of filters has one bit each: 1 << filter.
+GNOMON_CONSTANT GNOMON_UINT kFilterHard = 0u;
+GNOMON_CONSTANT GNOMON_UINT kFilterPcf = 1u;
+GNOMON_CONSTANT GNOMON_UINT kFilterPcss = 2u;
+GNOMON_CONSTANT GNOMON_UINT kFilterHost = 3u;  // the host's own function
+GNOMON_CONSTANT GNOMON_UINT kLightFilterShift = 4u;
+GNOMON_CONSTANT GNOMON_UINT kLightFilterMask = 3u;
+// Which of the frame's taps the light's soft shadows take.
+GNOMON_CONSTANT GNOMON_UINT kMaxPcssPresets = 4u;
+GNOMON_CONSTANT GNOMON_UINT kLightPcssPresetShift = 6u;
+GNOMON_CONSTANT GNOMON_UINT kLightPcssPresetMask = kMaxPcssPresets - 1u;
 
 // --- Depth bias ------------------------------------------------------------------------------------------------------
 GNOMON_CONSTANT GNOMON_UINT kDepthBiasOriented = 0u;          // toward the light; each texel against the face's plane
@@ -129,21 +136,28 @@ GNOMON_CONSTANT GNOMON_UINT kFinalCountMask = 0x7FFu;
 GNOMON_CONSTANT GNOMON_UINT kFinalEvaluateBit = 0x80000000u;
 
 // --- Specialization constants ----------------------------------------------------------------------------------------
+// Ids are the order of the members of Specialization (structs.h).
 GNOMON_CONSTANT GNOMON_UINT kSpecSubgroupSize = 0u;      // 4, 8, 16, 32 or 64
-GNOMON_CONSTANT GNOMON_UINT kSpecProvider = 1u;          // kProviderHard ...
+GNOMON_CONSTANT GNOMON_UINT kSpecFilters = 1u;           // set of filters that lights may have; 0: everything is lit
 GNOMON_CONSTANT GNOMON_UINT kSpecListReservation = 2u;   // kReserveApproximate ...
 GNOMON_CONSTANT GNOMON_UINT kSpecPcfRadius = 3u;         // texels, 1 to kMaxPcfRadius
 GNOMON_CONSTANT GNOMON_UINT kSpecHostDepthPyramid = 4u;  // 1: tile depth ranges come from the host's own pyramid
-GNOMON_CONSTANT GNOMON_UINT kSpecPcssSearchTaps = 5u;    // 1 to kMaxPcssTaps
-GNOMON_CONSTANT GNOMON_UINT kSpecPcssFilterTaps = 6u;    // 1 to kMaxPcssTaps
-GNOMON_CONSTANT GNOMON_UINT kSpecVisibilityBits = 7u;    // 8 or 4
-GNOMON_CONSTANT GNOMON_UINT kSpecShadowAtlases = 8u;     // 1 to kMaxShadowAtlases: how many a frame may have
-GNOMON_CONSTANT GNOMON_UINT kSpecDepthBias = 9u;         // kDepthBiasOriented ...
-GNOMON_CONSTANT GNOMON_UINT kSpecFacedAwayIsDark = 10u;  // 1: a face that looks away from a light is dark, unasked
-GNOMON_CONSTANT GNOMON_UINT kSpecFirstFree = 16u;        // a host's own constants start here
+GNOMON_CONSTANT GNOMON_UINT kSpecPcssPresets = 5u;       // 1 to kMaxPcssPresets
+GNOMON_CONSTANT GNOMON_UINT kSpecVisibilityBits = 6u;    // 8 or 4
+GNOMON_CONSTANT GNOMON_UINT kSpecShadowAtlases = 7u;     // 1 to kMaxShadowAtlases: how many a frame may have
+GNOMON_CONSTANT GNOMON_UINT kSpecDepthBias = 8u;         // kDepthBiasOriented ...
+GNOMON_CONSTANT GNOMON_UINT kSpecFacedAwayIsDark = 9u;   // 1: a face that looks away from a light is dark, unasked
+GNOMON_CONSTANT GNOMON_UINT kSpecCount = 10u;
+GNOMON_CONSTANT GNOMON_UINT kSpecFirstFree = 16u;  // a host's own constants start here
 
-// --- Descriptor bindings ---------------------------------------------------------------------------------------------
-// Set of the lists: everything a lighting shader needs. No shadowmap is in it.
+// --- Descriptor sets and bindings ------------------------------------------------------------------------------------
+// Vulkan promises no more than four sets.
+GNOMON_CONSTANT GNOMON_UINT kSetLists = 0u;       // all that lighting, EVALUATE and forward shaders read
+GNOMON_CONSTANT GNOMON_UINT kSetReceivers = 1u;   // the host's depth and what belongs to it
+GNOMON_CONSTANT GNOMON_UINT kSetShadowmaps = 2u;  // bound only where shadows are evaluated
+GNOMON_CONSTANT GNOMON_UINT kSetWorking = 3u;     // of the library's own passes; in the host's shaders the host's own
+GNOMON_CONSTANT GNOMON_UINT kSetCount = 4u;
+
 GNOMON_CONSTANT GNOMON_UINT kBindFrame = 0u;
 GNOMON_CONSTANT GNOMON_UINT kBindLights = 1u;
 GNOMON_CONSTANT GNOMON_UINT kBindZBins = 2u;
@@ -151,28 +165,30 @@ GNOMON_CONSTANT GNOMON_UINT kBindTileLightMasks = 3u;
 GNOMON_CONSTANT GNOMON_UINT kBindTileGroupLightMasks = 4u;
 GNOMON_CONSTANT GNOMON_UINT kBindTileDepthRanges = 5u;
 GNOMON_CONSTANT GNOMON_UINT kBindTileLightSlotIds = 6u;
-GNOMON_CONSTANT GNOMON_UINT kBindApproximateCounts = 7u;
-GNOMON_CONSTANT GNOMON_UINT kBindEarlyList = 8u;
-GNOMON_CONSTANT GNOMON_UINT kBindEarlyCounts = 9u;
-GNOMON_CONSTANT GNOMON_UINT kBindFinalList = 10u;
-GNOMON_CONSTANT GNOMON_UINT kBindFinalCounts = 11u;
-GNOMON_CONSTANT GNOMON_UINT kBindVisibility = 12u;
-GNOMON_CONSTANT GNOMON_UINT kBindEvaluateTiles = 13u;
-GNOMON_CONSTANT GNOMON_UINT kBindCounters = 14u;
-GNOMON_CONSTANT GNOMON_UINT kListsBindingCount = 15u;
-// Set of the receivers: the host's depth and, where it has them, face normals, receiver flags and a depth pyramid.
+GNOMON_CONSTANT GNOMON_UINT kBindEarlyList = 7u;
+GNOMON_CONSTANT GNOMON_UINT kBindEarlyCounts = 8u;
+GNOMON_CONSTANT GNOMON_UINT kBindFinalList = 9u;
+GNOMON_CONSTANT GNOMON_UINT kBindFinalCounts = 10u;
+GNOMON_CONSTANT GNOMON_UINT kBindVisibility = 11u;
+GNOMON_CONSTANT GNOMON_UINT kBindEvaluateTiles = 12u;
+GNOMON_CONSTANT GNOMON_UINT kListsBindingCount = 13u;
+// Receivers: depth and, where the host has them, face normals, receiver flags and a depth pyramid.
 GNOMON_CONSTANT GNOMON_UINT kBindDepth = 0u;
 GNOMON_CONSTANT GNOMON_UINT kBindFaceNormals = 1u;
 GNOMON_CONSTANT GNOMON_UINT kBindReceiverFlags = 2u;
 GNOMON_CONSTANT GNOMON_UINT kBindHostDepthPyramid = 3u;
 GNOMON_CONSTANT GNOMON_UINT kReceiversBindingCount = 4u;
-// Set of the shadowmaps: bound only where shadows are evaluated.
+// Shadowmaps and their bounds.
 GNOMON_CONSTANT GNOMON_UINT kBindShadowViews = 0u;
 GNOMON_CONSTANT GNOMON_UINT kBindShadowAtlas0 = 1u;  // and the next kMaxShadowAtlases - 1
 GNOMON_CONSTANT GNOMON_UINT kBindShadowSampler = kBindShadowAtlas0 + kMaxShadowAtlases;  // nearest, clamped
 GNOMON_CONSTANT GNOMON_UINT kBindShadowBounds = kBindShadowSampler + 1u;
-GNOMON_CONSTANT GNOMON_UINT kBindShadowBoundsCells = kBindShadowBounds + 1u;
-GNOMON_CONSTANT GNOMON_UINT kShadowmapsBindingCount = kBindShadowBoundsCells + 1u;
+GNOMON_CONSTANT GNOMON_UINT kShadowmapsBindingCount = kBindShadowBounds + 1u;
+// Working buffers of the view's passes.
+GNOMON_CONSTANT GNOMON_UINT kBindCounters = 0u;
+GNOMON_CONSTANT GNOMON_UINT kBindApproximateCounts = 1u;
+GNOMON_CONSTANT GNOMON_UINT kBindShadowBoundsCells = 2u;
+GNOMON_CONSTANT GNOMON_UINT kWorkingBindingCount = 3u;
 
 #ifdef __cplusplus
 }  // namespace gnomon::gpu

@@ -8,7 +8,7 @@
 #include "gpu_interface/numbers.h"
 
 #ifndef GNOMON_RECEIVERS_SET
-#define GNOMON_RECEIVERS_SET 1
+#define GNOMON_RECEIVERS_SET kSetReceivers
 #endif
 
 layout(set = GNOMON_RECEIVERS_SET, binding = kBindDepth) uniform texture2D hostDepth;

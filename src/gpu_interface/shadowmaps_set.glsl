@@ -10,7 +10,7 @@
 #include "gpu_interface/structs.h"
 
 #ifndef GNOMON_SHADOWMAPS_SET
-#define GNOMON_SHADOWMAPS_SET 2
+#define GNOMON_SHADOWMAPS_SET kSetShadowmaps
 #endif
 
 // Most hosts have one atlas: then nothing has to be chosen at every tap.
@@ -29,9 +29,6 @@ layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowSampler) uniform sample
 #ifdef GNOMON_SHADOW_BOUNDS_ACCESS
 layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowBounds, std430) restrict writeonly buffer ShadowBoundsBlock {
     vec2 shadowBounds[];
-};
-layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowBoundsCells, std430) restrict readonly buffer CellsBlock {
-    GpuShadowBoundsCell shadowBoundsCells[];
 };
 #else
 layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowBounds, std430) restrict readonly buffer ShadowBoundsBlock {

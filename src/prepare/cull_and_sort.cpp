@@ -48,7 +48,7 @@ bool fadeInOrder(float start, float end) {
     return start <= end && end >= 0.0f;
 }  // false for NaN; infinity is fine
 
-const char* whatIsWrong(const Light& light, std::uint32_t shadowViewCount) {
+const char* whatIsWrong(const Light& light) {
     const bool local = light.type != LightType::Directional;
     if (light.type != LightType::Point && light.type != LightType::Spot && local) {
         return "its type is none of LightType";
@@ -75,19 +75,10 @@ const char* whatIsWrong(const Light& light, std::uint32_t shadowViewCount) {
     if (!fadeInOrder(light.shadowFadeStartMetres, light.shadowFadeEndMetres)) {
         return "its shadowFadeEndMetres must be at least shadowFadeStartMetres and 0";
     }
-    if (light.firstShadowView != kNoShadowViews) {
-        if (!local && (light.cascadeCount < 1 || light.cascadeCount > gpu::kMaxCascades)) {
-            return "its cascadeCount must be 1 to 8, as it is directional and has shadow views";
-        }
-        if (!local && light.sourceRadius > kLargestAngularRadius) {
-            return "its sourceRadius, an angle as it is directional, must be at most 0.5 radians";
-        }
-        const std::uint32_t needed =
-            local ? light.type == LightType::Point ? gpu::kPointLightFaces : 1u : light.cascadeCount;
-        if (needed > shadowViewCount || light.firstShadowView > shadowViewCount - needed) {
-            return "its firstShadowView is out of bounds (a point light needs six views, a spot one, a directional "
-                   "light cascadeCount)";
-        }
+    if (static_cast<std::uint32_t>(light.filter) > gpu::kFilterHost) return "its filter is none of Filter";
+    if (light.pcssPreset >= gpu::kMaxPcssPresets) return "its pcssPreset must be below 4";
+    if (!local && light.casts && light.sourceRadius > kLargestAngularRadius) {
+        return "its sourceRadius, an angle as it is directional, must be at most 0.5 radians";
     }
     return nullptr;
 }
@@ -143,20 +134,18 @@ void fillDirectional(const Light& light, const ViewCamera& camera, VisibleLight&
     out.gpu.directionWs = toGpu(directionWs);
     out.gpu.directionVs = toGpu(camera.directionVs(directionWs));
     out.gpu.lightFade = 1.0f;
-    if (light.firstShadowView == kNoShadowViews) return;
+    out.casts = light.casts;
     // fade() as saturate(x * distance + y); a step, where it starts and ends at once, falls within a millimetre.
     const double start = light.shadowFadeStartMetres, end = light.shadowFadeEndMetres;
     double scale = 0.0, offset = 1.0;
     if (std::isfinite(end)) {
         scale = -1.0 / std::max(end - start, 1e-3);
         offset = -end * scale;
-        out.gpu.typeAndFlags |= gpu::kLightShadowFadesBit;
+        out.shadowFlags = gpu::kLightShadowFadesBit;
     }
-    out.gpu.shadowFadePerMetre = static_cast<float>(scale);
-    out.gpu.shadowFade = static_cast<float>(offset);
-    out.gpu.sourceRadius = static_cast<float>(std::tan(static_cast<double>(light.sourceRadius)));
-    out.gpu.typeAndFlags |= gpu::kLightCastsBit | light.cascadeCount << gpu::kLightCascadesShift;
-    out.gpu.shadowView = light.firstShadowView;
+    out.shadowFadePerMetre = static_cast<float>(scale);
+    out.shadowFade = static_cast<float>(offset);
+    out.shadowSourceRadius = static_cast<float>(std::tan(static_cast<double>(light.sourceRadius)));
 }
 
 void fillLocal(const Light& light, const ViewCamera& camera, const PrepareDesc& desc, VisibleLight& out) {
@@ -180,25 +169,46 @@ void fillLocal(const Light& light, const ViewCamera& camera, const PrepareDesc& 
     out.depth = depthRange(out.volume);
     const double distance = length(out.volume.apexVs);
     g.lightFade = static_cast<float>(fade(distance, light.fadeStartMetres, light.fadeEndMetres));
-    if (light.firstShadowView != kNoShadowViews) {
-        g.shadowFade = static_cast<float>(fade(distance, light.shadowFadeStartMetres, light.shadowFadeEndMetres));
-        if (g.shadowFade > 0.0f) {
-            g.typeAndFlags |= gpu::kLightCastsBit;
-            if (g.shadowFade < 1.0f) g.typeAndFlags |= gpu::kLightShadowFadesBit;
-            g.shadowView = light.firstShadowView;
-        }
-    }
+    out.shadowFade = static_cast<float>(fade(distance, light.shadowFadeStartMetres, light.shadowFadeEndMetres));
+    out.casts = light.casts && out.shadowFade > 0.0f;
+    if (out.shadowFade < 1.0f) out.shadowFlags = gpu::kLightShadowFadesBit;
+    out.shadowSourceRadius = light.sourceRadius;
 }
 
 }  // namespace
 
-Result validateLights(std::span<const Light> lights, std::uint32_t shadowViewCount) noexcept {
+Result validateLights(std::span<const Light> lights) noexcept {
     for (std::size_t i = 0; i < lights.size(); ++i) {
-        if (const char* wrong = whatIsWrong(lights[i], shadowViewCount)) {
+        if (const char* wrong = whatIsWrong(lights[i])) {
             return Result::failure(Status::BadArgument, "Light %zu: %s.", i, wrong);
         }
     }
     return {};
+}
+
+const char* whatIsWrong(const VisibleLight& light, const LightShadowViews& views,
+                        std::uint32_t shadowViewCount) noexcept {
+    const std::uint32_t type = light.gpu.typeAndFlags & gpu::kLightTypeMask;
+    if (type == gpu::kLightPoint && views.count != gpu::kPointLightFaces) return "a point light has six shadow views";
+    if (type == gpu::kLightSpot && views.count != 1) return "a spot has one shadow view";
+    if (type == gpu::kLightDirectional && (views.count < 1 || views.count > gpu::kMaxCascades)) {
+        return "a directional light has 1 to 8 shadow views, one per cascade";
+    }
+    if (views.count > shadowViewCount || views.first > shadowViewCount - views.count) {
+        return "its shadow views are out of bounds of FrameDesc::shadowViews";
+    }
+    return nullptr;
+}
+
+void giveShadow(const VisibleLight& light, const LightShadowViews& views, gpu::GpuLight& out) noexcept {
+    out.typeAndFlags |= gpu::kLightCastsBit | light.shadowFlags |
+                        static_cast<std::uint32_t>(light.filter) << gpu::kLightFilterShift |
+                        std::uint32_t{light.pcssPreset} << gpu::kLightPcssPresetShift;
+    if (light.directional) out.typeAndFlags |= views.count << gpu::kLightCascadesShift;
+    out.shadowView = views.first;
+    out.shadowFade = light.shadowFade;
+    out.shadowFadePerMetre = light.shadowFadePerMetre;
+    out.sourceRadius = light.shadowSourceRadius;
 }
 
 void CullAndSort::run(std::span<const Light> lights, const ViewCamera& camera, const Frustum& frustum,
@@ -261,6 +271,8 @@ void CullAndSort::fillVisible(std::span<const Light> lights, const ViewCamera& c
         out.directional = isDirectional(candidate.sortKey);
         const Light& light = lights[out.hostIndex];
         fillCommon(light, out.hostIndex, out.gpu);
+        out.filter = light.filter;
+        out.pcssPreset = light.pcssPreset;
         if (out.directional) {
             ++directionalCount_;
             fillDirectional(light, camera, out);

@@ -18,13 +18,24 @@ namespace gnomon::prepare {
 struct VisibleLight {
     std::uint32_t hostIndex = 0;
     bool directional = false;
+    bool casts = false;  // where it is given shadow views
     LightVolume volume;
     DepthRange depth;
-    gpu::GpuLight gpu = {};
+    gpu::GpuLight gpu = {};  // without its shadow, which giveShadow() adds
+    // Of the shadow: flags besides kLightCastsBit, fade and, for directional lights, tangent of the source's angle.
+    std::uint32_t shadowFlags = 0;
+    float shadowFade = 0, shadowFadePerMetre = 0, shadowSourceRadius = 0;
+    Filter filter = Filter::Pcss;
+    std::uint8_t pcssPreset = 0;
 };
 
 /// Fails with a sentence that names the light where one breaks a rule of scene.h.
-Result validateLights(std::span<const Light> lights, std::uint32_t shadowViewCount) noexcept;
+Result validateLights(std::span<const Light> lights) noexcept;
+/// What is wrong with the views of a light that casts, or null.
+const char* whatIsWrong(const VisibleLight& light, const LightShadowViews& views,
+                        std::uint32_t shadowViewCount) noexcept;
+/// Completes a copy of `light.gpu`.
+void giveShadow(const VisibleLight& light, const LightShadowViews& views, gpu::GpuLight& out) noexcept;
 
 class CullAndSort {
 public:

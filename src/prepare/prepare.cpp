@@ -17,6 +17,7 @@
 #include "gpu_interface/structs.h"
 #include "prepare/camera.h"
 #include "prepare/cull_and_sort.h"
+#include "prepare/on_screen.h"
 #include "prepare/screen_bounds.h"
 #include "prepare/tile_light_masks.h"
 #include "prepare/zbins.h"
@@ -31,13 +32,19 @@ struct Prepare::State {
     prepare::ScreenGrid grid;
     prepare::TileLightMasks masks;
     std::vector<prepare::DepthRange> depths;  // of the lights with a range
+    // What the last successful run() found.
+    bool hasRun = false;
+    prepare::ZBinLayout zBinLayout;
+    gpu::GpuFrame frame = {};
+    PrepareReport report;
+    std::vector<LightOnScreen> onScreen;
 };
 
 namespace {
 
 using prepare::VisibleLight;
 
-Result checkInput(const ViewInput& input, const PrepareOutput& output, const PrepareDesc& desc) {
+Result checkInput(const ViewInput& input, const PrepareDesc& desc) {
     if (input.widthPx == 0 || input.heightPx == 0) {
         return Result::failure(Status::BadArgument, "ViewInput's extent is %ux%u; give at least 1x1.", input.widthPx,
                                input.heightPx);
@@ -46,9 +53,6 @@ Result checkInput(const ViewInput& input, const PrepareOutput& output, const Pre
         return Result::failure(Status::BadArgument,
                                "ViewInput's extent %ux%u is above the maximum %ux%u; create with a larger PrepareDesc.",
                                input.widthPx, input.heightPx, desc.maxWidthPx, desc.maxHeightPx);
-    }
-    if (!output.frameConstants || !output.lights || !output.zBins || !output.tileLightMasks) {
-        return Result::failure(Status::BadArgument, "PrepareOutput has a null pointer; give all four destinations.");
     }
     if (!input.lights.empty() && input.lights.data() == nullptr) {
         return Result::failure(Status::BadArgument, "ViewInput::lights points nowhere but is not empty.");
@@ -92,12 +96,35 @@ gpu::GpuFrame frameConstants(const ViewInput& input, const prepare::ViewCamera& 
     return frame;
 }
 
-void writeLights(std::span<const VisibleLight> lights, void* destination) {
+// With the shadow of each light that casts and has views.
+void writeLights(std::span<const VisibleLight> lights, std::span<const LightShadowViews> views, void* destination,
+                 std::uint32_t& casting) {
     auto* out = static_cast<unsigned char*>(destination);
-    for (const VisibleLight& light : lights) {
-        std::memcpy(out, &light.gpu, sizeof(light.gpu));
-        out += sizeof(light.gpu);
+    casting = 0;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const bool casts = !views.empty() && lights[i].casts && views[i].first != kNoShadowViews;
+        gpu::GpuLight light = lights[i].gpu;
+        if (casts) prepare::giveShadow(lights[i], views[i], light);
+        casting += casts ? 1u : 0u;
+        std::memcpy(out, &light, sizeof(light));
+        out += sizeof(light);
     }
+}
+
+Result checkViews(std::span<const VisibleLight> lights, std::span<const LightShadowViews> views,
+                  std::uint32_t shadowViewCount) {
+    if (!views.empty() && views.size() != lights.size()) {
+        return Result::failure(Status::BadArgument, "%zu lights were given shadow views, but %zu are visible.",
+                               views.size(), lights.size());
+    }
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const LightShadowViews& v = views[i];
+        if (!lights[i].casts || v.first == kNoShadowViews) continue;
+        if (const char* wrong = prepare::whatIsWrong(lights[i], v, shadowViewCount)) {
+            return Result::failure(Status::BadArgument, "Light %u: %s.", lights[i].hostIndex, wrong);
+        }
+    }
+    return {};
 }
 
 PrepareReport reportOf(const ViewInput& input, const prepare::CullAndSort& lists) {
@@ -106,9 +133,7 @@ PrepareReport reportOf(const ViewInput& input, const prepare::CullAndSort& lists
     report.visible = static_cast<std::uint32_t>(lists.visible().size());
     report.dropped = lists.droppedCount();
     report.directional = lists.directionalCount();
-    for (const VisibleLight& light : lists.visible()) {
-        if ((light.gpu.typeAndFlags & gpu::kLightCastsBit) != 0) ++report.casting;
-    }
+    for (const VisibleLight& light : lists.visible()) report.casting += light.casts ? 1u : 0u;
     return report;
 }
 
@@ -149,6 +174,7 @@ Result Prepare::create(const PrepareDesc& desc, std::unique_ptr<Prepare>& out) n
         state->grid.create(rows);
         state->masks.create(columns, rows);
         state->depths.reserve(gpu::kMaxLightsPerView);
+        state->onScreen.reserve(gpu::kMaxLightsPerView);
         out.reset(new Prepare(std::move(state)));
     } catch (const std::bad_alloc&) {
         return Result::failure(Status::OutOfMemory, "Prepare::create found no memory; lower the maximum extent.");
@@ -156,13 +182,30 @@ Result Prepare::create(const PrepareDesc& desc, std::unique_ptr<Prepare>& out) n
     return {};
 }
 
-Result Prepare::run(const ViewInput& input, const PrepareOutput& output, PrepareReport& report) noexcept {
+Result Prepare::resize(const PrepareDesc& desc) noexcept {
+    if (Result result = checkDesc(desc); !result) return result;
     State& s = *state_;
-    if (Result result = checkInput(input, output, s.desc); !result) return result;
+    s.hasRun = false;
+    try {
+        const std::uint32_t columns = divideRoundingUp(desc.maxWidthPx, gpu::kMaskTileSizePx);
+        const std::uint32_t rows = divideRoundingUp(desc.maxHeightPx, gpu::kMaskTileSizePx);
+        s.grid.create(rows);
+        s.masks.create(columns, rows);
+    } catch (const std::bad_alloc&) {
+        return Result::failure(Status::OutOfMemory, "Prepare::resize found no memory; lower the maximum extent.");
+    }
+    s.desc = desc;
+    return {};
+}
+
+Result Prepare::run(const ViewInput& input, PreparedLights& out) noexcept {
+    State& s = *state_;
+    s.hasRun = false;
+    if (Result result = checkInput(input, s.desc); !result) return result;
     prepare::ViewCamera camera;
     if (Result result = prepare::deriveCamera(input.camera, input.widthPx, input.heightPx, camera); !result)
         return result;
-    if (Result result = prepare::validateLights(input.lights, input.shadowViewCount); !result) return result;
+    if (Result result = prepare::validateLights(input.lights); !result) return result;
     try {
         s.cullAndSort.run(input.lights, camera, prepare::frustumOf(camera, input.widthPx, input.heightPx), s.desc);
     } catch (const std::bad_alloc&) {
@@ -173,16 +216,38 @@ Result Prepare::run(const ViewInput& input, const PrepareOutput& output, Prepare
     const std::uint32_t directional = s.cullAndSort.directionalCount();
     s.depths.clear();
     for (const VisibleLight& light : lights.subspan(directional)) s.depths.push_back(light.depth);
-    const prepare::ZBinLayout layout = prepare::layOutZBins(s.depths, camera.nearMetres, camera.farMetres);
-    const auto zBins = prepare::buildZBins(s.depths, directional, layout);
+    s.zBinLayout = prepare::layOutZBins(s.depths, camera.nearMetres, camera.farMetres);
     s.grid.set(camera, input.widthPx, input.heightPx);
+    s.masks.cover(s.grid, lights);
+    s.frame = frameConstants(input, camera, s.grid, s.zBinLayout, s.cullAndSort);
+    s.report = reportOf(input, s.cullAndSort);
+    s.onScreen.clear();  // room for all was made
+    for (std::uint32_t i = 0; i < lights.size(); ++i)
+        s.onScreen.push_back(prepare::measure(lights[i], camera, s.masks.share(s.grid, i)));
+    out = {s.onScreen, s.report};
+    s.hasRun = true;
+    return {};
+}
 
-    const gpu::GpuFrame frame = frameConstants(input, camera, s.grid, layout, s.cullAndSort);
-    std::memcpy(output.frameConstants, &frame, sizeof(frame));
-    writeLights(lights, output.lights);
+Result Prepare::write(std::span<const LightShadowViews> lightViews, std::uint32_t shadowViewCount,
+                      const PrepareOutput& output, PrepareReport* report) noexcept {
+    State& s = *state_;
+    if (!s.hasRun) return Result::failure(Status::BadArgument, "Prepare::write() needs a successful run() before it.");
+    if (!output.frameConstants || !output.lights || !output.zBins || !output.tileLightMasks) {
+        return Result::failure(Status::BadArgument, "PrepareOutput has a null pointer; give all four destinations.");
+    }
+    const std::span<const VisibleLight> lights = s.cullAndSort.visible();
+    if (Result result = checkViews(lights, lightViews, shadowViewCount); !result) return result;
+    const auto zBins = prepare::buildZBins(s.depths, s.cullAndSort.directionalCount(), s.zBinLayout);
+    std::memcpy(output.frameConstants, &s.frame, sizeof(s.frame));
+    std::uint32_t casting = 0;
+    writeLights(lights, lightViews, output.lights, casting);
     std::memcpy(output.zBins, zBins.data(), sizeof(zBins));
-    s.masks.run(s.grid, lights, output.tileLightMasks);
-    report = reportOf(input, s.cullAndSort);
+    s.masks.write(s.grid, output.tileLightMasks);
+    if (report != nullptr) {
+        *report = s.report;
+        report->casting = casting;
+    }
     return {};
 }
 

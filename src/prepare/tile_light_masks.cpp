@@ -31,12 +31,12 @@ void TileLightMasks::create(std::uint32_t maxColumns, std::uint32_t maxRows) {
     bounds_.create(maxRows);
     spans_.resize(static_cast<std::size_t>(maxRows) * gpu::kMaxLightsPerView);
     spanCounts_.resize(maxRows);
+    tileCounts_.resize(gpu::kMaxLightsPerView);
     changes_.assign((static_cast<std::size_t>(maxColumns) + 1) * kWords, 0);
     changedWords_.assign(maxColumns + 1, 0);
 }
 
-void TileLightMasks::run(const ScreenGrid& grid, std::span<const VisibleLight> lights, void* destination) noexcept {
-    findSpans(grid, lights);
+void TileLightMasks::write(const ScreenGrid& grid, void* destination) noexcept {
     auto* out = static_cast<unsigned char*>(destination);
     for (std::uint32_t row = 0; row < grid.rows; ++row) {
         markRow(row);
@@ -44,10 +44,15 @@ void TileLightMasks::run(const ScreenGrid& grid, std::span<const VisibleLight> l
     }
 }
 
-void TileLightMasks::findSpans(const ScreenGrid& grid, std::span<const VisibleLight> lights) noexcept {
+float TileLightMasks::share(const ScreenGrid& grid, std::uint32_t light) const noexcept {
+    return static_cast<float>(tileCounts_[light]) / static_cast<float>(grid.columns * grid.rows);
+}
+
+void TileLightMasks::cover(const ScreenGrid& grid, std::span<const VisibleLight> lights) noexcept {
     everywhere_.fill(0);
     std::fill_n(spanCounts_.begin(), grid.rows, 0u);
     for (std::uint32_t light = 0; light < lights.size(); ++light) {
+        tileCounts_[light] = grid.columns * grid.rows;
         if (lights[light].directional) continue;
         const Coverage coverage = bounds_.cover(grid, lights[light].volume);
         if (coverage.everywhere) {
@@ -55,10 +60,12 @@ void TileLightMasks::findSpans(const ScreenGrid& grid, std::span<const VisibleLi
             continue;
         }
         const TileSpan* spans = bounds_.spans();
+        tileCounts_[light] = 0;
         for (std::uint32_t row = coverage.firstRow; row < coverage.lastRow; ++row) {
             if (spans[row].first >= spans[row].last) continue;
             spans_[static_cast<std::size_t>(row) * gpu::kMaxLightsPerView + spanCounts_[row]++] =
                 packSpan(light, spans[row]);
+            tileCounts_[light] += std::uint32_t(spans[row].last) - spans[row].first;
         }
     }
 }

@@ -18,7 +18,7 @@
 #ifndef GNOMON_SHADING_EVALUATE_LIGHTS_GLSL
 #define GNOMON_SHADING_EVALUATE_LIGHTS_GLSL
 
-#include "generate_shadows/visibility.glsl"
+#include "visibility/visibility.glsl"
 #include "shading/candidates.glsl"
 #include "shading/tile_lights.glsl"
 

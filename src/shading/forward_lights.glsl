@@ -1,6 +1,6 @@
 // For the host's forward shaders (hair, glass): a forward surface is not at the depth that the tile lists were built
 // for, so it finds its lights through the tile light masks and the zBin of its own depth, and samples the standard
-// shadowmaps with the same filters (generate_shadows/visibility.glsl, with a Receiver that the shader fills itself).
+// shadowmaps with the same filters (visibility/visibility.glsl, with a Receiver that the shader fills itself).
 //
 //     ForwardWalk walk = beginForwardWalk(uvec2(gl_FragCoord.xy) - frame.viewportPx, viewDepth);
 //     uint lightIndex;

@@ -2,7 +2,7 @@
 #ifndef GNOMON_SHADING_RECEIVER_GLSL
 #define GNOMON_SHADING_RECEIVER_GLSL
 
-#include "depth_bias/mode.glsl"
+#include "visibility/depth_bias_mode.glsl"
 #include "gpu_interface/receivers_set.glsl"
 #include "shading/frame.glsl"
 #include "shading/normal_from_depth.glsl"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "gnomon/tiled_shadows.h"
+#include "gnomon/view.h"
 #include "gpu_interface/numbers.h"
 #include "gpu_interface/structs.h"
 

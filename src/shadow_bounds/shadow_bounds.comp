@@ -9,6 +9,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define GNOMON_SHADOW_BOUNDS_ACCESS
 #include "vulkan/work_group.glsl"
+#include "gpu_interface/working_set.glsl"
 #include "gpu_interface/shadowmaps_set.glsl"
 
 shared vec2 sharedBounds[kWorkGroupSize];

@@ -23,6 +23,7 @@ namespace gnomon {
     X(CmdBindPipeline)             \
     X(CmdCopyBuffer)               \
     X(CmdDispatch)                 \
+    X(CmdDispatchIndirect)         \
     X(CmdFillBuffer)               \
     X(CmdPipelineBarrier2)         \
     X(CmdResetQueryPool)           \

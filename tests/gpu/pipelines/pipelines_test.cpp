@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "gnomon/tiled_shadows.h"
+#include "gnomon/gnomon.h"
 #include "gpu_interface/numbers.h"
 #include "renderer/lighting/lighting_pipelines.h"
 
@@ -92,35 +92,30 @@ std::vector<std::uint32_t> sizesOf(const DeviceInfo& info) {
 }
 
 // Filters, with the PCF radius where it matters.
-std::vector<ContextDesc> filtersOf(ContextDesc desc) {
-    std::vector<ContextDesc> out;
-    desc.filter = Filter::Hard;
-    out.push_back(desc);
-    desc.filter = Filter::Off;
-    out.push_back(desc);
-    desc.filter = Filter::Pcf;
-    for (desc.pcfRadius = 1; desc.pcfRadius <= gpu::kMaxPcfRadius; ++desc.pcfRadius) out.push_back(desc);
-    return out;
-}
-
-std::vector<ContextDesc> reservationsOf(ContextDesc desc) {
-    std::vector<ContextDesc> out;
-    for (const ListReservation way : {ListReservation::Approximate, ListReservation::Accurate, ListReservation::Fixed}) {
-        desc.listReservation = way;
-        desc.fixedListEntriesPerTile = way == ListReservation::Fixed ? 16 : 0;
-        out.push_back(desc);
+std::vector<ShadowSettings> filtersOf() {
+    std::vector<ShadowSettings> out;
+    ShadowSettings settings;
+    for (const FilterSet filters : {only(Filter::Hard), FilterSet{0}, kAllBuiltInFilters}) {
+        settings.filters = filters;
+        out.push_back(settings);
     }
+    settings.filters = only(Filter::Pcf);
+    for (settings.pcfRadius = 1; settings.pcfRadius <= gpu::kMaxPcfRadius; ++settings.pcfRadius) out.push_back(settings);
     return out;
 }
 
 // Filters and reservations crossed; the host's pyramid, which one pass alone looks at, once.
-std::vector<ContextDesc> variantsOf(const ContextDesc& desc) {
-    std::vector<ContextDesc> out;
-    for (const ContextDesc& filter : filtersOf(desc)) {
-        for (const ContextDesc& variant : reservationsOf(filter)) out.push_back(variant);
+std::vector<ShadowSettings> variantsOf() {
+    std::vector<ShadowSettings> out;
+    for (ShadowSettings settings : filtersOf()) {
+        for (const ListReservation way :
+             {ListReservation::Approximate, ListReservation::Accurate, ListReservation::Fixed}) {
+            settings.listReservation = way;
+            settings.fixedListEntriesPerTile = way == ListReservation::Fixed ? 16 : 0;
+            out.push_back(settings);
+        }
     }
-    out.push_back(desc);
-    out.back().hostDepthPyramid = true;
+    out.emplace_back().hostDepthPyramid = true;
     return out;
 }
 
@@ -130,35 +125,35 @@ TEST_F(PipelinesTest, EveryVariantOfTheLibrary) {
         for (const std::uint32_t size : sizesOf(info)) {
             ContextDesc desc = descOf(device, info.queueFamily);
             desc.subgroupSize = size;
-            std::size_t made = 0;
-            for (const ContextDesc& variant : variantsOf(desc)) {
-                std::unique_ptr<Context> context;
-                const Result result = Context::create(variant, context);
+            std::unique_ptr<Context> context;
+            const Result created = Context::create(desc, context);
+            ASSERT_TRUE(created) << info.name << ", " << size << " lanes: " << created.message();
+            EXPECT_EQ(context->subgroupSize(), size);
+            for (const ShadowSettings& settings : variantsOf()) {
+                const Result result = context->prepare(settings);
                 ASSERT_TRUE(result) << info.name << ", " << size << " lanes: " << result.message();
-                EXPECT_EQ(context->subgroupSize(), size);
-                ++made;
             }
-            std::printf("%s (%s), %u lanes: %zu contexts\n", info.name.c_str(), info.driver.c_str(), size, made);
+            std::printf("%s (%s), %u lanes: %zu settings, %u pipelines\n", info.name.c_str(), info.driver.c_str(), size,
+                        variantsOf().size(), context->pipelineCount());
         }
     }
 }
 
 TEST_F(PipelinesTest, LightingOfTheRenderer) {
+    using enum LightingKind;
     for (const DeviceInfo& info : devices_) {
         const Device device(*instance(), info);
         for (const std::uint32_t size : sizesOf(info)) {
             ContextDesc desc = descOf(device, info.queueFamily);
             desc.subgroupSize = size;
-            for (const ContextDesc& variant : filtersOf(desc)) {
-                std::unique_ptr<Context> context;
-                const Result result = Context::create(variant, context);
-                ASSERT_TRUE(result) << info.name << ": " << result.message();
-                for (const bool on : {false, true}) {
-                    const LightingPipelines made(device, *context, {.quantises = on, .walksMasks = on});
-                    for (const Pipeline* pipeline : {&made.deferred, &made.evaluate, &made.inlined, &made.unshadowed})
-                        EXPECT_NE(pipeline->get(), VK_NULL_HANDLE);
-                }
-            }
+            std::unique_ptr<Context> context;
+            const Result result = Context::create(desc, context);
+            ASSERT_TRUE(result) << info.name << ": " << result.message();
+            LightingPipelines pipelines(device, *context);
+            for (const ShadowSettings& settings : filtersOf())
+                for (const bool on : {false, true})
+                    for (const LightingKind kind : {Deferred, Evaluate, Inline, Unshadowed})
+                        EXPECT_NE(pipelines.get(kind, settings, {.quantises = on, .walksMasks = on}), VK_NULL_HANDLE);
         }
     }
 }
@@ -170,7 +165,6 @@ TEST_F(PipelinesTest, TwoContextsOfTheDevicesOwnChoice) {
         ContextDesc desc = descOf(device, info.queueFamily);
         std::unique_ptr<Context> first, second;
         ASSERT_TRUE(Context::create(desc, first));
-        desc.filter = Filter::Hard;
         desc.pipelineCache = VK_NULL_HANDLE;
         ASSERT_TRUE(Context::create(desc, second));
         EXPECT_EQ(first->subgroupSize(), std::min(info.subgroupSize, gpu::kWorkGroupSize));

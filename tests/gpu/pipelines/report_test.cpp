@@ -43,7 +43,7 @@ TEST(PipelineReport, HasEveryPipelineInBothWidths) {
         }
         for (const char* shadowing :
              {"generate_shadows", "lighting_evaluate", "lighting_inline", "lighting_inline, lists alone"})
-            for (const char* provider : {"hard", "pcf, radius 1", "pcf, radius 3", "pcss"}) {
+            for (const char* provider : {"hard", "pcf, radius 1", "pcf, radius 3", "pcss", "hard, pcf and pcss"}) {
                 const std::string name = std::string(shadowing) + " (" + provider + ")" + lanes;
                 EXPECT_GT(registers[name], 0) << name;
                 ++expected;

@@ -250,10 +250,10 @@ TEST_F(ShadowCacheTest, RendererFollowsTime) {
         scene.cameras[0].worldFromCamera =
             glm::inverse(glm::lookAt(glm::vec3(0, 12, 24), glm::vec3(0, 0, -6), glm::vec3(0, 1, 0)));
         RendererDesc desc;
-        desc.widthPx = 160;
-        desc.heightPx = 96;
+        desc.frame.widthPx = 160;
+        desc.frame.heightPx = 96;
         desc.atlasSizePx = 512;
-        desc.filter = Filter::Hard;
+        desc.frame.filters = {Filter::Hard};
         Renderer kept(device, scene, desc);
         for (double seconds : {0.0, 0.25, 0.5, 0.75}) kept.renderFrame(scene.cameras[0], ShadowMode::Deferred, seconds);
         const std::vector<float> moving = kept.readPicture().rgba;
@@ -318,10 +318,10 @@ TEST_F(ShadowCacheTest, AMomentLooksLikeAStillScene) {
         SceneCamera camera;
         camera.worldFromCamera = glm::inverse(glm::lookAt(glm::vec3(0, 20, 30), glm::vec3(0), glm::vec3(0, 1, 0)));
         RendererDesc desc;
-        desc.widthPx = 160;
-        desc.heightPx = 96;
+        desc.frame.widthPx = 160;
+        desc.frame.heightPx = 96;
         desc.atlasSizePx = 2048;
-        desc.filter = Filter::Hard;
+        desc.frame.filters = {Filter::Hard};
         Renderer moving(device, scene, desc);
         moving.renderFrame(camera, ShadowMode::Deferred, 0.1);
         const std::vector<float> before = moving.readPicture().rgba;

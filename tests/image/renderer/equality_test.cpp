@@ -21,10 +21,10 @@ constexpr FilterCase kHard = {"hard", Filter::Hard}, kPcf1 = {"pcf1", Filter::Pc
 
 RendererDesc withFilter(const FilterCase& filter) {
     RendererDesc desc = smallDesc();
-    desc.filter = filter.filter;
-    desc.pcfRadius = filter.radius;
-    desc.pcss = filter.taps;
-    desc.visibilityBits = filter.bits;
+    desc.frame.filters = {filter.filter};
+    desc.frame.shadows.pcfRadius = filter.radius;
+    desc.frame.shadows.pcssPresets[0] = filter.taps;
+    desc.frame.shadows.visibilityBits = filter.bits;
     return desc;
 }
 
@@ -70,7 +70,7 @@ TEST_P(DeferredIsInline, OtherFilters) {
 TEST_P(DeferredIsInline, FaceNormalsFromDepth) {
     Worst worst;
     RendererDesc desc = withFilter(kHard);
-    desc.readFaceNormals = false;
+    desc.frame.readFaceNormals = false;
     const View3d columns = builtin("columns");
     expectDeferredIsInline(device(), "columns, normals from depth", columns, desc, worst, true);
     if (thorough())
@@ -90,6 +90,27 @@ TEST_P(DeferredIsInline, SlotsOfFourBits) {
     worst.report(device(), "deferred against inline, 4 bits");
 }
 
+// Lights of all three types take turns with three filters and two presets of taps, in one frame.
+TEST_P(DeferredIsInline, FiltersMixedInOneFrame) {
+    Worst worst;
+    const View3d view = builtin("sundial", 64);
+    RendererDesc desc = withFilter(kPcss);
+    desc.frame.filters = {Filter::Hard, Filter::Pcf, Filter::Pcss, Filter::Pcss};
+    desc.frame.shadows.pcssPresets = {kFewTaps, PcssTaps{8, 12}};
+    desc.frame.shadows.pcssPresetCount = 2;
+    const Frame mixed = expectDeferredIsInline(device(), "mixed filters", view, desc, worst, true);
+    if (thorough()) {
+        desc.frame.shadows.visibilityBits = 4;
+        expectDeferredIsInline(device(), "mixed filters, 4 bits", view, desc, worst, true);
+    }
+    // The turns are taken: no single filter makes this picture.
+    for (const FilterCase& filter : {kHard, kPcss}) {
+        const Frame alone = drawOnce(device(), view, withFilter(filter), ShadowMode::Deferred);
+        EXPECT_FALSE(alone.linear.rgba == mixed.linear.rgba) << filter.name;
+    }
+    worst.report(device(), "deferred against inline, mixed filters");
+}
+
 TEST_P(DeferredIsInline, With64And256LightsMore) {
     Worst worst;
     if (fullRun()) {
@@ -107,7 +128,7 @@ TEST_P(DeferredIsInline, With64And256LightsMore) {
 TEST_P(DeferredIsInline, PatternPerFrame) {
     const View3d view = builtin("boxes");
     RendererDesc desc = withFilter(kPcss);
-    desc.patternPerFrame = true;
+    desc.frame.shadows.patternPerFrame = true;
     Renderer inlined(device(), view.scene, desc), deferred(device(), view.scene, desc);
     HdrPicture before;
     Worst worst;
@@ -128,10 +149,10 @@ TEST_P(DeferredIsInline, ShadowBoundsChangeNothing) {
         const View3d view = builtin(scene, 32);
         SCOPED_TRACE(view.name);
         RendererDesc desc = withFilter(kPcss);
-        desc.shadowBounds = false;
+        desc.frame.shadows.shadowBounds = false;
         Renderer plain(device(), view.scene, desc);
         const HdrPicture expected = draw(plain, view.camera, ShadowMode::Deferred).linear;
-        desc.shadowBounds = true;
+        desc.frame.shadows.shadowBounds = true;
         Renderer bounded(device(), view.scene, desc);
         draw(bounded, view.camera, ShadowMode::Off);  // draws the shadowmaps, makes no bounds
         for (const ShadowMode mode : {ShadowMode::Deferred, ShadowMode::Inline}) {

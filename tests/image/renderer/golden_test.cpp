@@ -43,7 +43,7 @@ TEST_P(Golden, PicturesStay) {
         const View3d view = builtin(scene);
         RendererDesc desc = smallDesc();
         desc.atlasSizePx = 2048;
-        desc.pcss = kPcssMedium;
+        desc.frame.shadows.pcssPresets[0] = kPcssMedium;
         const Frame frame = drawOnce(device(), view, desc, ShadowMode::Deferred);
         const Picture picture = toneMap(frame.linear, view.scene.exposureEv100.value());
         const std::filesystem::path file = folder / (std::string(scene) + ".png");

@@ -129,10 +129,10 @@ View3d orthographic(View3d view, float focusMetres) {
 
 RendererDesc smallDesc(std::uint32_t widthPx, std::uint32_t heightPx) {
     RendererDesc desc;
-    desc.widthPx = widthPx;
-    desc.heightPx = heightPx;
+    desc.frame.widthPx = widthPx;
+    desc.frame.heightPx = heightPx;
     desc.atlasSizePx = thorough() ? 2048 : 1024;
-    desc.pcss = kFewTaps;
+    desc.frame.shadows.pcssPresets[0] = kFewTaps;
     return desc;
 }
 

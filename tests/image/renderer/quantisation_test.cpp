@@ -22,7 +22,7 @@ constexpr double kMeanAbsoluteOfFour = 0.75;
 void print(const Device& device, const std::string& what, const RendererDesc& desc, const Difference& error) {
     std::printf("[ figure   ] %s: %s: largest %u/255, mean %.4f/255, %.2f %% of pixels\n", device.info().name.c_str(),
                 what.c_str(), error.largest, error.meanAbsolute,
-                100.0 * static_cast<double>(error.pixels) / (desc.widthPx * desc.heightPx));
+                100.0 * static_cast<double>(error.pixels) / (desc.frame.widthPx * desc.frame.heightPx));
 }
 
 TEST_P(Quantisation, CostsAtMostTwoSteps) {
@@ -31,12 +31,12 @@ TEST_P(Quantisation, CostsAtMostTwoSteps) {
         const View3d view = builtin(scene, 64);
         SCOPED_TRACE(view.name);
         RendererDesc desc = smallDesc();
-        desc.pcss = {8, 24};
-        desc.quantiseInline = false;
+        desc.frame.shadows.pcssPresets[0] = {8, 24};
+        desc.frame.inlineVariant.quantises = false;
         Renderer renderer(device(), view.scene, desc);
         const Frame exact = draw(renderer, view.camera, ShadowMode::Inline);
         const Frame deferred = draw(renderer, view.camera, ShadowMode::Deferred);
-        desc.visibilityBits = 4;
+        desc.frame.shadows.visibilityBits = 4;
         const Frame four = drawOnce(device(), view, desc, ShadowMode::Deferred);
         const float exposure = automaticExposure(exact.linear);
         const Picture expected = toneMap(exact.linear, exposure), actual = toneMap(deferred.linear, exposure);

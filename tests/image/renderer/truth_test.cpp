@@ -91,7 +91,7 @@ public:
           pose_(poseAt(view_.scene, 0.0)),
           traced_(view_.scene, pose_, glm::dvec3(view_.camera.worldFromCamera[3])) {
         draw(renderer_, view_.camera, ShadowMode::Deferred);
-        receivers_ = receiversOf(traced_, view_.camera, desc_.widthPx, desc_.heightPx, renderer_.readTriangleIds());
+        receivers_ = receiversOf(traced_, view_.camera, desc_.frame.widthPx, desc_.frame.heightPx, renderer_.readTriangleIds());
     }
 
     // At an edge by the whole reach of the filter or by half of it.
@@ -102,7 +102,7 @@ public:
         desc.viewsOrigin = renderer_.frameOrigin();
         desc.soft = false;
         desc.edgeTexels = edgeTexels_;
-        const TruthExtent extent = {desc_.widthPx, desc_.heightPx};
+        const TruthExtent extent = {desc_.frame.widthPx, desc_.frame.heightPx};
         LightTruth truth = traceLight(traced_, receivers_, extent, desc);
         desc.edgeTexels = 0.5 * edgeTexels_;
         const LightTruth nearer = traceLight(traced_, receivers_, extent, desc);
@@ -115,8 +115,8 @@ public:
 private:
     static RendererDesc descOf(const FilterCase& filter) {
         RendererDesc desc = smallDesc();
-        desc.filter = filter.filter;
-        desc.pcfRadius = filter.radius;
+        desc.frame.filters = {filter.filter};
+        desc.frame.shadows.pcfRadius = filter.radius;
         return desc;
     }
 
@@ -130,7 +130,7 @@ private:
 };
 
 Picture greyPicture(const RendererDesc& desc, const std::vector<float>& values) {
-    Picture picture{desc.widthPx, desc.heightPx, {}};
+    Picture picture{desc.frame.widthPx, desc.frame.heightPx, {}};
     for (const float v : values)
         picture.rgb.insert(picture.rgb.end(), 3, static_cast<std::uint8_t>(255.0f * std::max(v, 0.0f)));
     return picture;
@@ -185,8 +185,8 @@ TEST_P(RayTruth, PicturesShowTheVisibility) {
     view.scene.lights = {view.scene.lights.at(1)};
     view.scene.skyColour = view.scene.groundColour = glm::vec3(0.0f);
     RendererDesc desc = smallDesc(120, 68);
-    desc.filter = Filter::Pcf;
-    desc.pcfRadius = 3;
+    desc.frame.filters = {Filter::Pcf};
+    desc.frame.shadows.pcfRadius = 3;
     Renderer renderer(device(), view.scene, desc);
     const HdrPicture unshadowed = draw(renderer, view.camera, ShadowMode::Off).linear;
     const HdrPicture picture = draw(renderer, view.camera, ShadowMode::Deferred).linear;

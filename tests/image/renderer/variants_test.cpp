@@ -29,7 +29,7 @@ TEST_P(Variants, StandardDepth) {
     for (const View3d* view : {&sundial64(), &columns64()}) {
         if (!fullRun() && view == &columns64()) continue;
         RendererDesc desc = smallDesc();
-        desc.deviceDepth = DeviceDepth::StandardZ;
+        desc.frame.deviceDepth = DeviceDepth::StandardZ;
         const Frame standard =
             expectDeferredIsInline(device(), view->name + " standard depth", *view, desc, worst, true);
         // The same picture, but for what standard depth loses (lavapipe 0.02/255, SwiftShader 0.34).
@@ -50,7 +50,7 @@ TEST_P(Variants, OrthographicCamera) {
             if (!fullRun() && (depth == DeviceDepth::StandardZ) != (source == &columns64())) continue;
             const View3d view = orthographic(*source, 12.0f);
             RendererDesc desc = smallDesc();
-            desc.deviceDepth = depth;
+            desc.frame.deviceDepth = depth;
             expectDeferredIsInline(device(), view.name, view, desc, worst, true);
         }
     }
@@ -89,8 +89,8 @@ constexpr std::uint32_t kAmple = 1u << 16;
 
 RendererDesc ampleDesc(ListReservation reservation) {
     RendererDesc desc = smallDesc();
-    desc.listReservation = reservation;
-    desc.fixedListEntriesPerTile = 96;  // more than any tile of these scenes has
+    desc.frame.shadows.listReservation = reservation;
+    desc.frame.shadows.fixedListEntriesPerTile = 96;  // more than any tile of these scenes has
     desc.listEntries = desc.visibilitySlots = kAmple;
     return desc;
 }

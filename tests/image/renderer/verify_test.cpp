@@ -27,8 +27,8 @@ Verified verified(const Device& device, const View3d& view, const RendererDesc& 
     const Pose pose = poseAt(view.scene, 0.0);
     const SceneCamera camera = posedCamera(view.scene, pose, view.camera);
     const TracedScene traced(view.scene, pose, glm::dvec3(camera.worldFromCamera[3]),
-                             {desc.shadowDrawing.subsurfaceFronts, static_cast<double>(desc.subsurfaceBiasMetres)});
-    const TruthExtent extent = {desc.widthPx, desc.heightPx};
+                             {desc.frame.drawing.subsurfaceFronts, static_cast<double>(desc.frame.subsurfaceBiasMetres)});
+    const TruthExtent extent = {desc.frame.widthPx, desc.frame.heightPx};
     const std::vector<TruthReceiver> receivers =
         receiversOf(traced, camera, extent.widthPx, extent.heightPx, renderer.readTriangleIds());
     for (std::uint32_t i = 0; i < pose.lights.size(); ++i) {
@@ -36,7 +36,7 @@ Verified verified(const Device& device, const View3d& view, const RendererDesc& 
         light.light = pose.lights[i];
         light.views = renderer.shadowViews(i);
         light.viewsOrigin = renderer.frameOrigin();
-        light.soft = desc.filter == Filter::Pcss;
+        light.soft = desc.frame.filters.front() == Filter::Pcss;
         light.subsetOf = 4;
         out.visibility = renderer.readVisibility(i);
         out.truth = traceLight(traced, receivers, extent, light);
@@ -61,7 +61,7 @@ TEST_P(Verify, AcneAndLeakStayWithinTheirLimits) {
         if (!always && !fullRun()) continue;
         SCOPED_TRACE(std::string(scene) + " " + name);
         RendererDesc desc = smallDesc(160, 90);
-        desc.filter = filter;
+        desc.frame.filters = {filter};
         const Figures f = verified(device(), builtin(scene), desc).figures;
         std::printf(
             "[ figure   ] %s: %s %s: of %llu pairs acne %.4f %%, leak %.4f %%, contact leak %.4f %%; rmse %.4f\n",
@@ -85,9 +85,9 @@ TEST_P(Verify, FaceNormalsFromDepthOnWideFaces) {
                                                     {orthographic(boxes, 1.5f), DeviceDepth::StandardZ}};
     for (const auto& [view, depth] : cases) {
         RendererDesc desc = smallDesc(160, 90);
-        desc.filter = Filter::Hard;
-        desc.readFaceNormals = false;
-        desc.deviceDepth = depth;
+        desc.frame.filters = {Filter::Hard};
+        desc.frame.readFaceNormals = false;
+        desc.frame.deviceDepth = depth;
         const Figures f = verified(device(), view, desc).figures;
         std::printf("[ figure   ] %s: %s, normals from depth: acne %.4f %%, leak %.4f %%\n",
                     device().info().name.c_str(), view.name.c_str(), 100.0 * f.share(f.acne), 100.0 * f.share(f.leak));
@@ -101,7 +101,7 @@ TEST_P(Verify, FaceNormalsFromDepthOnWideFaces) {
 // The same comparison tells a result that is wrong: every shadow lost, and every light.
 TEST_P(Verify, LostShadowsAndLightsAreTold) {
     RendererDesc desc = smallDesc(160, 90);
-    desc.filter = Filter::Hard;
+    desc.frame.filters = {Filter::Hard};
     Verified v = verified(device(), builtin("sphere-on-plane"), desc);
     for (float& visibility : v.visibility) visibility = visibility < 0.0f ? visibility : 1.0f;
     EXPECT_GT(figuresOf(v.truth, v.visibility, false).opaque.leak, 50u);
@@ -130,12 +130,12 @@ View3d hiddenPlate(float heightMetres, float halfMetres) {
 TEST_P(Verify, ABiasThatIsACentimetreTooLargeIsTold) {
     const View3d view = hiddenPlate(0.006f, 1.0f);
     RendererDesc desc = smallDesc(160, 90);
-    desc.filter = Filter::Hard;
+    desc.frame.filters = {Filter::Hard};
     const Figures good = verified(device(), view, desc).figures;
     EXPECT_GT(good.contacts, 300u);
     EXPECT_LE(good.share(good.acne + good.leak), kMostAcneAndLeak);
     EXPECT_LE(good.share(good.contactLeak), kMostContactLeak);
-    desc.biasMetres += 0.01f;
+    desc.frame.biasMetres += 0.01f;
     const Figures planted = verified(device(), view, desc).figures;
     EXPECT_GT(planted.contactLeak, good.contactLeak + 100u);
     EXPECT_GT(planted.share(planted.contactLeak), kMostContactLeak);
@@ -151,7 +151,7 @@ TEST_P(Verify, PenumbraOfAPlateOverAPlane) {
     ASSERT_TRUE(parseCamera("2,2,4:0,0,0:35", view.scene, view.camera).ok());
     for (const PcssTaps taps : {kPcssMedium, kPcssHigh}) {
         RendererDesc desc = smallDesc(160, 90);
-        desc.pcss = taps;
+        desc.frame.shadows.pcssPresets[0] = taps;
         desc.atlasSizePx = 2048;  // in larger texels the penumbra is no wider than a few of them
         const Figures f = verified(device(), view, desc).figures;
         std::printf("[ figure   ] %s: %u and %u taps: rmse %.4f of %llu pairs in penumbra\n",
@@ -169,10 +169,10 @@ TEST_P(Verify, SubsurfaceRulesAreDrawnAsTheyAreTraced) {
     for (Material& material : view.scene.materials) material.subsurface = material.name == "red";
     view.scene.lights.at(0).position = {-2.0f, 2.5f, -1.0f};
     RendererDesc desc = smallDesc(120, 68);
-    desc.filter = Filter::Hard;
+    desc.frame.filters = {Filter::Hard};
     for (const bool fronts : {false, true}) {
         SCOPED_TRACE(fronts);
-        desc.shadowDrawing.subsurfaceFronts = fronts;
+        desc.frame.drawing.subsurfaceFronts = fronts;
         const Verified v = verified(device(), view, desc);
         const Figures &skin = v.subsurface, &floor = v.figures;
         std::printf(
@@ -196,7 +196,7 @@ TEST_P(Verify, SubsurfaceRulesAreDrawnAsTheyAreTraced) {
 TEST_P(Verify, VisibilityIsTheSameWithOverflow) {
     const View3d view = builtin("boxes");
     RendererDesc desc = smallDesc(160, 90);
-    desc.filter = Filter::Pcf;
+    desc.frame.filters = {Filter::Pcf};
     const auto allOf = [&](const RendererDesc& d) {
         Renderer renderer(device(), view.scene, d);
         renderer.renderFrame(view.camera, ShadowMode::Deferred);

@@ -49,7 +49,7 @@ protected:
 
 TEST_F(Program, HelpAndVersionAreGood) {
     for (const char* arguments : {"--help", "--version", "render --help", "bench --help", "verify --help",
-                                  "compare --help", "devices --help", "scenes --help"}) {
+                                  "compare --help", "devices --help", "scenes --help", "settings --help"}) {
         const Outcome result = run(arguments);
         EXPECT_EQ(result.exitCode, 0) << arguments;
         EXPECT_NE(result.out, "") << arguments;
@@ -92,6 +92,11 @@ TEST_F(Program, WrongUsageIsRefused) {
                                   "render --seed -1",
                                   "render --frames 0",
                                   "render --filter soft",
+                                  "render --filter hard,",
+                                  "render --filter hard,soft",
+                                  "render --pcss-taps low/",
+                                  "render --pcss-taps low/low/low/low/low",
+                                  "settings extra",
                                   "render --pcf-radius 0",
                                   "render --pcf-radius 4",
                                   "render --pcss-taps 16",

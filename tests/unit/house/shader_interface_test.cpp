@@ -51,10 +51,10 @@ std::vector<MemberLayout> gpuShadowView() {
             MEMBER(GpuShadowView, atlasPerTexel),    MEMBER(GpuShadowView, boundsFirst),
             MEMBER(GpuShadowView, boundsRow),        MEMBER(GpuShadowView, boundsBlocks),
             MEMBER(GpuShadowView, reserved),         MEMBER(GpuShadowView, planeX),
-            MEMBER(GpuShadowView, depthStep),        MEMBER(GpuShadowView, planeY),
-            MEMBER(GpuShadowView, reserved1),        MEMBER(GpuShadowView, planeZ),
-            MEMBER(GpuShadowView, reserved2),        MEMBER(GpuShadowView, planeSlopePerPx),
-            MEMBER(GpuShadowView, tangentPerNdc)};
+            MEMBER(GpuShadowView, planeSlopePerPxX), MEMBER(GpuShadowView, planeY),
+            MEMBER(GpuShadowView, planeSlopePerPxY), MEMBER(GpuShadowView, planeZ),
+            MEMBER(GpuShadowView, depthStep),        MEMBER(GpuShadowView, tangentPerNdc),
+            MEMBER(GpuShadowView, reserved1)};
 }
 
 std::vector<MemberLayout> gpuShadowBoundsCell() {

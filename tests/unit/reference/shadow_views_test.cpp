@@ -58,7 +58,7 @@ TEST(ShadowViews, PlanesSlopeAsTheirPointsDo) {
         if (std::abs(k) < 0.2) continue;
         ++compared;
         const double inverseK = 1.0 / (model.orthographic ? k : k * z);
-        const double slopeX = mx * view.planeSlopePerPx.x * inverseK, slopeY = my * view.planeSlopePerPx.y * inverseK;
+        const double slopeX = mx * view.planeSlopePerPxX * inverseK, slopeY = my * view.planeSlopePerPxY * inverseK;
         const auto deviceAt = [&](Vec3 q, double& px, double& py) {
             const ShadowPosition at = project(model, q, 0.0);
             px = at.xPx, py = at.yPx;

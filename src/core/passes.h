@@ -1,0 +1,40 @@
+#pragma once
+// All passes of a view, in the order of the paper's figure 1. Each declares itself in its own room.
+
+#include "find_lights_accurate/find_lights_accurate.h"
+#include "find_lights_approximate/find_lights_approximate.h"
+#include "generate_shadows/generate_shadows.h"
+#include "hierarchical_depth/hierarchical_depth.h"
+#include "shadow_bounds/shadow_bounds.h"
+#include "statistics/gather_statistics.h"
+
+namespace gnomon {
+
+enum PassId : std::uint32_t {
+    kPassHierarchicalDepth,
+    kPassFindLightsApproximate,
+    kPassFindLightsAccurate,
+    kPassShadowBounds,
+    kPassGenerateShadows,
+    kPassGatherStatistics,
+    kPassCount,
+};
+
+inline const Pass& passOf(PassId id) noexcept {
+    switch (id) {
+        case kPassHierarchicalDepth:
+            return hierarchicalDepthPass();
+        case kPassFindLightsApproximate:
+            return findLightsApproximatePass();
+        case kPassFindLightsAccurate:
+            return findLightsAccuratePass();
+        case kPassShadowBounds:
+            return shadowBoundsPass();
+        case kPassGenerateShadows:
+            return generateShadowsPass();
+        default:
+            return gatherStatisticsPass();
+    }
+}
+
+}  // namespace gnomon

@@ -1,0 +1,92 @@
+#include "core/pipelines.h"
+
+#include <bit>
+#include <utility>
+
+namespace gnomon {
+
+void Pipelines::create(const DeviceContext& device, Desc desc) {
+    device_ = &device;
+    desc_ = std::move(desc);
+}
+
+void Pipelines::destroy() noexcept {
+    for (const Entry& entry : entries_) device_->vk.DestroyPipeline(device_->device, entry.pipeline, nullptr);
+    entries_.clear();
+}
+
+std::uint32_t Pipelines::count() const noexcept {
+    const std::scoped_lock lock(mutex_);
+    return static_cast<std::uint32_t>(entries_.size());
+}
+
+VkPipeline Pipelines::find(PassId pass, const Values& values) const noexcept {
+    const std::scoped_lock lock(mutex_);
+    for (const Entry& entry : entries_)
+        if (entry.pass == pass && entry.values == values) return entry.pipeline;
+    return VK_NULL_HANDLE;
+}
+
+Result Pipelines::get(const gpu::Specialization& specialization, PassPipelines& out) {
+    const auto all = std::bit_cast<Values>(specialization);
+    for (std::uint32_t i = 0; i < kPassCount; ++i) {
+        const auto pass = static_cast<PassId>(i);
+        Values values = {};
+        for (const std::uint32_t id : passOf(pass).specialization) values[id] = all[id];
+        out[i] = find(pass, values);
+        if (out[i] != VK_NULL_HANDLE) continue;
+        VkPipeline made = VK_NULL_HANDLE;
+        if (Result result = make(pass, values, made); !result) return result;
+        // Another thread may have made the same one meanwhile: the first one stays.
+        const std::scoped_lock lock(mutex_);
+        for (const Entry& entry : entries_)
+            if (entry.pass == pass && entry.values == values) out[i] = entry.pipeline;
+        if (out[i] != VK_NULL_HANDLE) {
+            device_->vk.DestroyPipeline(device_->device, made, nullptr);
+            continue;
+        }
+        try {
+            entries_.push_back({pass, values, made});
+        } catch (...) {
+            device_->vk.DestroyPipeline(device_->device, made, nullptr);
+            throw;
+        }
+        out[i] = made;
+    }
+    return {};
+}
+
+Result Pipelines::make(PassId id, const Values& values, VkPipeline& out) const {
+    const Functions& vk = device_->vk;
+    const Pass& pass = passOf(id);
+    std::span<const std::uint32_t> spirv = pass.spirv;
+    if (id == kPassGenerateShadows && !desc_.generateShadowsSpirv.empty()) spirv = desc_.generateShadowsSpirv;
+    VkShaderModuleCreateInfo module = {VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
+    module.codeSize = spirv.size_bytes();
+    module.pCode = spirv.data();
+    VkShaderModule shader = VK_NULL_HANDLE;
+    VkResult result = vk.CreateShaderModule(device_->device, &module, nullptr, &shader);
+    if (result != VK_SUCCESS) return vulkanFailure(result, "vkCreateShaderModule");
+
+    VkSpecializationMapEntry entries[gpu::kSpecCount] = {};
+    std::uint32_t count = 0;
+    for (const std::uint32_t constant : pass.specialization) entries[count++] = {constant, constant * 4u, 4u};
+    const VkSpecializationInfo specialization = {count, entries, sizeof(values), values.data()};
+    VkPipelineShaderStageRequiredSubgroupSizeCreateInfo required = {
+        VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO};
+    required.requiredSubgroupSize = desc_.subgroupSize;
+    VkComputePipelineCreateInfo info = {VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
+    info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                  desc_.requireSubgroupSize ? &required : nullptr,
+                  VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT,
+                  VK_SHADER_STAGE_COMPUTE_BIT,
+                  shader,
+                  "main",
+                  &specialization};
+    info.layout = desc_.layout;
+    result = vk.CreateComputePipelines(device_->device, desc_.cache, 1, &info, nullptr, &out);
+    vk.DestroyShaderModule(device_->device, shader, nullptr);
+    return result == VK_SUCCESS ? Result() : vulkanFailure(result, pass.name);
+}
+
+}  // namespace gnomon

@@ -1,0 +1,188 @@
+// View: records the passes. Barriers, labels and timeline rows follow from each pass's declaration.
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
+#include "core/view.h"
+#include "gpu_interface/packing.h"
+
+namespace gnomon {
+namespace {
+
+using namespace gpu;
+
+constexpr VkPipelineStageFlags2 kCompute = Recorder::kCompute;
+constexpr VkAccessFlags2 kStorageAccess = Recorder::kStorage;
+
+Recorder recorderOf(View::State& state, VkCommandBuffer commands) {
+    return {state.context->device, commands, state.tracker, state.timeline};
+}
+
+void recordPass(View::State& state, VkCommandBuffer commands, PassId id, std::uint32_t x, std::uint32_t y) {
+    std::array<BoundSet, kSetCount> sets;
+    for (std::uint32_t set = 0; set < kSetCount; ++set)
+        sets[set] = {state.frames[state.current].sets[set], state.uses[set]};
+    recorderOf(state, commands)
+        .dispatch(passOf(id), state.pipelines[id], state.context->pipelineLayout, sets, {.x = x, .y = y});
+}
+
+// Images that are bound but never read still need the layout that their descriptor names. Every frame, since a host may
+// drop a recorded frame without submitting it.
+void preparePlaceholders(View::State& state, VkCommandBuffer commands) {
+    VkImageMemoryBarrier2 barriers[2] = {};
+    const VkImage images[2] = {state.noFaceNormals.image, state.noAtlas.image};
+    const VkImageAspectFlags aspects[2] = {VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_ASPECT_DEPTH_BIT};
+    for (int i = 0; i < 2; ++i) {
+        barriers[i].sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+        barriers[i].srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+        barriers[i].dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+        barriers[i].dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+        barriers[i].oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+        barriers[i].newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        barriers[i].srcQueueFamilyIndex = barriers[i].dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        barriers[i].image = images[i];
+        barriers[i].subresourceRange = {aspects[i], 0, 1, 0, 1};
+    }
+    VkDependencyInfo info = {VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    info.imageMemoryBarrierCount = 2;
+    info.pImageMemoryBarriers = barriers;
+    state.context->device.vk.CmdPipelineBarrier2(commands, &info);
+}
+
+// The frame's first commands: the last frame's reads end, counters and the indirect command start afresh.
+void resetFrame(View::State& state, VkCommandBuffer commands) {
+    const Functions& vk = state.context->device.vk;
+    Recorder recorder = recorderOf(state, commands);
+    preparePlaceholders(state, commands);
+    // All commands, so that it may be recorded on a compute queue too; the host's lighting may read in any stage.
+    recorder.barrier(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                     kCompute | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, kStorageAccess | VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    const GpuCounters counters = {};
+    GpuEvaluateHead head = {};
+    head.groupCountX = kEvaluateRowTiles;
+    head.groupCountZ = 1;
+    const VkDeviceSize offset = state.desc.guardBytes;
+    vk.CmdUpdateBuffer(commands, state.buffers.device[kBufferCounters].buffer, offset, sizeof(counters), &counters);
+    vk.CmdUpdateBuffer(commands, state.buffers.device[kBufferEvaluateTiles].buffer, offset, sizeof(head), &head);
+    recorder.barrier(VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, kCompute, kStorageAccess);
+}
+
+// A frame without phase 4 has no final lists; what an earlier frame left must not be counted.
+void clearFinalCounts(View::State& state, VkCommandBuffer commands) {
+    const Functions& vk = state.context->device.vk;
+    Recorder recorder = recorderOf(state, commands);
+    recorder.barrier(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, kStorageAccess, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                     VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    vk.CmdFillBuffer(commands, state.buffers.device[kBufferFinalCounts].buffer, state.desc.guardBytes,
+                     state.sizes.bytes[kBufferFinalCounts], 0);
+    recorder.barrier(VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, kCompute, kStorageAccess);
+}
+
+// A pool that would have sufficed, with a tenth to spare: what a host may grow to between frames.
+std::uint32_t recommend(std::uint32_t used) {
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(std::uint64_t(used) + used / 10 + 1, 0xFFFFFFFFu));
+}
+
+}  // namespace
+
+void View::recordHierarchicalDepth(VkCommandBuffer commands) noexcept {
+    State& state = *state_;
+    resetFrame(state, commands);
+    const GpuFrame& f = state.frame;
+    // With the host's pyramid one lane per tile instead of one per pixel.
+    const uvec2 groups = state.frames[state.current].settings.hostDepthPyramid ? f.tileGroupCounts : f.tileCounts;
+    recordPass(state, commands, kPassHierarchicalDepth, groups.x, groups.y);
+}
+
+void View::recordFindLightsApproximate(VkCommandBuffer commands) noexcept {
+    const GpuFrame& f = state_->frame;
+    recordPass(*state_, commands, kPassFindLightsApproximate, f.tileGroupCounts.x, f.tileGroupCounts.y);
+}
+
+void View::recordFindLightsAccurate(VkCommandBuffer commands) noexcept {
+    const GpuFrame& f = state_->frame;
+    recordPass(*state_, commands, kPassFindLightsAccurate, f.tileCounts.x, f.tileCounts.y);
+    recorderOf(*state_, commands).publish();
+}
+
+void View::recordShadowBounds(VkCommandBuffer commands) noexcept {
+    State& state = *state_;
+    const std::uint32_t cells = state.frames[state.current].boundsCellCount;
+    if (cells != 0) recordPass(state, commands, kPassShadowBounds, cells, 1);
+    state.boundsCells.made();
+    recorderOf(state, commands).publish();
+}
+
+void View::recordGenerateShadows(VkCommandBuffer commands) noexcept {
+    State& state = *state_;
+    recordPass(state, commands, kPassGenerateShadows, state.frame.tileCounts.x, state.frame.tileCounts.y);
+    state.frames[state.current].generated = true;
+    recorderOf(state, commands).publish();
+}
+
+void View::recordEndFrame(VkCommandBuffer commands) noexcept {
+    State& state = *state_;
+    const Functions& vk = state.context->device.vk;
+    FrameInFlight& slot = state.frames[state.current];
+    if (!slot.generated) clearFinalCounts(state, commands);
+    if (state.desc.statistics) {
+        recordPass(state, commands, kPassGatherStatistics, divideRoundingUp(slot.tiles, kWorkGroupSize), 1);
+    }
+    Recorder recorder = recorderOf(state, commands);
+    recorder.barrier(kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                     VK_ACCESS_2_TRANSFER_READ_BIT);
+    const VkDeviceSize from = state.desc.guardBytes;
+    const VkBufferCopy counters = {from, 0, sizeof(GpuCounters)};
+    const VkBufferCopy head = {from, sizeof(GpuCounters), sizeof(GpuEvaluateHead)};
+    const VkBuffer readback = state.buffers.of(kBufferReadback, state.current).buffer;
+    vk.CmdCopyBuffer(commands, state.buffers.device[kBufferCounters].buffer, readback, 1, &counters);
+    vk.CmdCopyBuffer(commands, state.buffers.device[kBufferEvaluateTiles].buffer, readback, 1, &head);
+    recorder.barrier(VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
+                     VK_ACCESS_2_HOST_READ_BIT);
+    slot.ended = true;
+}
+
+bool View::State::readCounters(std::uint64_t frameNumber, FrameStatistics& out) const noexcept {
+    const auto index = static_cast<std::uint32_t>(frameNumber % desc.framesInFlight);
+    const FrameInFlight& slot = frames[index];
+    if (slot.frameNumber != frameNumber || !slot.ended) return false;
+    const auto* mapped = static_cast<const std::byte*>(buffers.of(kBufferReadback, index).mapped);
+    GpuCounters c;
+    GpuEvaluateHead head;
+    std::memcpy(&c, mapped, sizeof(c));
+    std::memcpy(&head, mapped + sizeof(c), sizeof(head));
+    out = {};
+    out.frameNumber = frameNumber;
+    out.lights = slot.lights;
+    out.listCapacity = slot.listCapacity;
+    out.slotCapacity = slot.slotCapacity;
+    out.listEntries = c.listEntries;
+    out.visibilitySlots = c.visibilitySlots;
+    out.listOverflowTiles = c.listOverflowTiles;
+    out.slotOverflowEntries = c.slotOverflowEntries;
+    out.accurateExceedsApproximate = c.accurateExceedsApproximate;
+    out.evaluateTiles = head.tileCount;
+    out.recommendedListEntries = recommend(c.listEntries);
+    if (slot.settings.listReservation == ListReservation::Fixed) {
+        out.listEntries = slot.tiles * roundUpToEarlyWord(slot.settings.fixedListEntriesPerTile);
+        out.recommendedListEntries = out.listEntries;
+    }
+    // Tiles without list space asked for no slot; their casting lights may need one each.
+    const bool asked = c.listOverflowTiles == 0 || !desc.statistics;
+    out.recommendedVisibilitySlots = recommend(asked ? c.visibilitySlots : c.earlyCastingEntries);
+    out.tilesWithGeometry = c.tilesWithGeometry;
+    out.approximateEntries = c.approximateEntries;
+    out.earlyEntries = c.earlyEntries;
+    out.earlyCastingEntries = c.earlyCastingEntries;
+    out.finalEntries = c.finalEntries;
+    out.finalSlotEntries = c.finalSlotEntries;
+    out.maxLightsInTile = c.maxLightsInTile;
+    out.prepareMilliseconds = slot.prepareMilliseconds;
+    return true;
+}
+
+bool View::statistics(std::uint64_t frameNumber, FrameStatistics& out) const noexcept {
+    return state_->readCounters(frameNumber, out);
+}
+
+}  // namespace gnomon

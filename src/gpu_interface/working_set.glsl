@@ -1,0 +1,16 @@
+// The set of the working buffers: what the library's passes keep among themselves. Hosts use its number for their own set.
+#ifndef GNOMON_GPU_INTERFACE_WORKING_SET_GLSL
+#define GNOMON_GPU_INTERFACE_WORKING_SET_GLSL
+
+#include "gpu_interface/numbers.h"
+#include "gpu_interface/structs.h"
+
+layout(set = kSetWorking, binding = kBindCounters, std430) restrict buffer CountersBlock { GpuCounters counters; };
+layout(set = kSetWorking, binding = kBindApproximateCounts, std430) restrict buffer ApproximateCountsBlock {
+    uint approximateCounts[];
+};
+layout(set = kSetWorking, binding = kBindShadowBoundsCells, std430) restrict readonly buffer CellsBlock {
+    GpuShadowBoundsCell shadowBoundsCells[];
+};
+
+#endif

@@ -1,0 +1,95 @@
+// Oriented depth bias: at which depth a receiver is compared with each texel of a shadowmap.
+//
+// Problem: a shadowmap holds one depth per texel, that of the texel's centre; a surface seen at a slant is above it on
+// one side of the texel and below it on the other, and shadows itself.
+// Source: the paper, section 4: a constant, 2 mm by default, in *linear* depth along the light's view axis; slopes are
+// met at each texel by the receiver's own face plane.
+// Plain way: a hardware bias by slope, in device depth, as large as the widest kernel on the steepest face needs.
+// Here: device depth is affine in a texel's position along any plane, with perspective (A + B / z, and 1 / z is affine)
+// as without. So one depth and one slope per pixel give the plane's depth at every texel's centre: what the rasterizer
+// stored there, if nothing is nearer.
+// The bias grows by how far the rounding of the camera's depth may have moved the position off its face.
+// Other modes, to compare: the paper's listing 7 (one depth for all texels, nearer to the light or, where the face
+// looks away, farther), and no bias at all, for maps that were drawn with a hardware bias.
+// Limits: the slope of faces that are nearly edge-on to the light is cut at kLeastCosine (0.3 degrees). The map
+// holds the surface as the rasterizer snapped it, 2^-4 (SwiftShader) to 2^-8 texels aside, hence the slack by slope.
+#ifndef GNOMON_VISIBILITY_DEPTH_BIAS_GLSL
+#define GNOMON_VISIBILITY_DEPTH_BIAS_GLSL
+
+#include "visibility/depth_bias_mode.glsl"
+#include "gpu_interface/structs.h"
+#include "shading/light_tests.glsl"
+#include "shading/receiver.glsl"
+
+const float kLeastCosine = 0.005;
+const float kSnapPx = 1.0 / 16.0;
+
+// |rays| of a view through ndc, as a multiple of linear depth; `tangent` is where: lateral over linear depth.
+float rayLength(vec2 tangent) {
+    precise float squared = tangent.x * tangent.x + (tangent.y * tangent.y + 1.0);
+    return sqrt(squared);
+}
+
+// Slope of the device depth of the plane through the receiver with face normal n, per texel. `ndc`, `linear` and
+// `tangent` are the receiver's in the view. `linearPerMetre`: how much linear depth a metre across the face is.
+vec2 planeSlope(GpuShadowView view, bool orthographic, vec3 n, vec2 ndc, float linear, vec2 tangent,
+                out float linearPerMetre) {
+    precise vec3 m = vec3(dot(n, view.planeX), dot(n, view.planeY), dot(n, view.planeZ));
+    precise float k = orthographic ? m.z : fma(m.x, ndc.x, fma(m.y, ndc.y, m.z));
+    float least = kLeastCosine * rayLength(tangent);
+    if (abs(k) < least) k = k < 0.0 ? -least : least;
+    precise float inverse = 1.0 / (orthographic ? k : k * linear);
+    precise float across = abs(orthographic ? inverse : inverse * linear);
+    linearPerMetre = across;
+    precise vec2 slope = m.xy * vec2(view.planeSlopePerPxX, view.planeSlopePerPxY) * inverse;
+    return slope;
+}
+
+// How far the point moves toward the light along the light's view axis, metres.
+float linearBias(GpuLight light, Receiver receiver) {
+    return receiver.subsurface ? max(light.biasMetres, frame.subsurfaceBiasMetres) : light.biasMetres;
+}
+
+bool movesTowardLight(GpuLight light, Receiver receiver) {
+    vec3 toLight = lightType(light) == kLightDirectional ? -light.directionWs : light.positionWs - receiver.positionWs;
+    return receiver.subsurface || facesLight(receiver.faceNormalWs, toLight);
+}
+
+// What rounding may make of a device depth, in the map and here: 16 steps of a float's terms, a step of an atlas of
+// fewer bits, and the rasterizer's snapping. With reversed Z the first is 20 micrometres at 20 m; with standard Z and a
+// near plane of 5 cm, 16 mm, and no smaller bias could hold there.
+float deviceDepthSlack(GpuShadowView view, float depth, vec2 slope) {
+    precise float rounding = 1e-6 * (abs(view.depthFromLinearA) + abs(depth - view.depthFromLinearA));
+    precise float slack = rounding + view.depthStep + kSnapPx * (abs(slope.x) + abs(slope.y));
+    return slack;
+}
+
+float deviceDepthOf(GpuShadowView view, bool orthographic, float linear) {
+    float b = view.depthFromLinearB;
+    precise float depth = view.depthFromLinearA + (orthographic ? b * linear : b / max(linear, 1e-4));
+    return depth;
+}
+
+// The device depth at which a receiver is compared at its own place in a view, and the slope of its plane there, per
+// texel. `ndc`, `linear` and `tangent` are its place in the view.
+float biasedDepth(GpuShadowView view, bool orthographic, GpuLight light, Receiver receiver, vec2 ndc, float linear,
+                  vec2 tangent, out vec2 slope) {
+    slope = vec2(0.0);
+    if (kDepthBias == kDepthBiasUnbiased) return deviceDepthOf(view, orthographic, linear);
+    float bias = linearBias(light, receiver);
+    // Away from the light, so that what looks away from it rather shadows itself.
+    float sign = kFacedAwayIsDark != 0u || movesTowardLight(light, receiver) ? 1.0 : -1.0;
+    if (kDepthBias == kDepthBiasOrientedConstant) {
+        precise float moved = linear - sign * bias;
+        return deviceDepthOf(view, orthographic, moved);
+    }
+    float linearPerMetre;
+    slope = planeSlope(view, orthographic, receiver.faceNormalWs, ndc, linear, tangent, linearPerMetre);
+    precise float biased = linear - sign * (bias + receiver.offPlaneMetres * linearPerMetre);
+    precise float depth = deviceDepthOf(view, orthographic, biased);
+    precise float slack = sign * deviceDepthSlack(view, depth, slope);
+    precise float compared = (view.flags & kShadowViewReversedZBit) != 0u ? depth + slack : depth - slack;
+    return compared;
+}
+
+#endif

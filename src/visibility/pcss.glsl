@@ -1,0 +1,65 @@
+// Visibility provider "pcss": percentage closer soft shadows, the penumbra of a light with a size.
+//
+// Problem: a shadow is sharp where it touches its blocker and widens with the distance from it.
+// Source: Fernando 2005, "Percentage-Closer Soft Shadows". Its penumbra is (z - zb) / zb times the source's size.
+// Plain way: average the blockers in a region of fixed width, then average comparisons in a region as wide as the
+// penumbra of that average.
+// Here: (1) The disk that the source is, seen from the receiver through the map, is a disk whose radius is linear in
+// the blocker's *device* depth, with and without perspective: one multiplication per stored depth. So (2) each blocker
+// is asked whether it lies in the disk of its own depth, which makes a wide search harmless: what the source cannot see
+// does not count. (3) Search taps, four texels each, crowd toward the middle (radius by the square), where near
+// blockers must be found; filter taps are spread evenly, each a bilinear comparison. (4) A pixel in which no texel of
+// the search is a blocker is lit, one in which all occlude is dark. (Shadow bounds, where the host has them made, tell
+// that of many pixels before any tap.) (5) The pattern is a spiral of golden angles, turned per pixel by a sequence of
+// low discrepancy in whole numbers: every pipeline and device sees the same one. (6) A blocker is nearer to the light
+// than the receiver: a tap's plane depth grows beyond the receiver's by one texel's slope at most, else walls behind
+// the receiver would shadow it.
+// Limits: one depth per texel stands for all blockers behind each other; radii beyond kMaxPcssRadiusPx texels are cut.
+#ifndef GNOMON_VISIBILITY_PCSS_GLSL
+#define GNOMON_VISIBILITY_PCSS_GLSL
+
+#include "visibility/pcss_search.glsl"
+
+float filterTap(ShadowPoint s, vec2 corner) {
+    precise vec2 first = floor(corner);
+    precise vec2 f = corner - first;
+    vec4 lit = vec4(lessThanEqual(gatherShadowTexels(s, first), planeDepthsAt(s, first)));
+    precise float top = fma(f.x, lit.z - lit.w, lit.w);
+    precise float bottom = fma(f.x, lit.y - lit.x, lit.x);
+    precise float value = fma(f.y, bottom - top, top);
+    return value;
+}
+
+float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius) {
+    uint preset = pcssPresetOf(light);
+    precise float sum = 0.0;
+    bool inside = !mayLeave(s, k, radius);
+    vec2 direction = vec2(1.0, 0.0);
+    for (uint i = 0u; i < frame.pcssTaps[preset].filterTaps; ++i) {
+        precise float share = sqrt((float(i) + 0.5) * frame.pcssTaps[preset].perFilterTap);
+        precise float away = share * radius;
+        vec2 offset = tapOffset(k, direction);
+        direction = nextDirection(direction);
+        precise vec2 corner = fma(offset, vec2(away), s.corner);
+        if (!inside && leavesFace(s, k, corner)) {
+            float plane, stored;
+            otherFace(light, s, i, corner + 0.5, plane, stored);
+            sum += stored > plane ? 0.0 : 1.0;
+        } else {
+            sum += filterTap(s, clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));
+        }
+    }
+    precise float visibility = sum * frame.pcssTaps[preset].perFilterTap;
+    return visibility;
+}
+
+float pcssVisibility(GpuLight light, ShadowPoint s, uvec2 pixel) {
+    PcssKernel k = pcssKernelOf(light, s, pixel);
+    precise float behind = s.depth - (abs(s.slope.x) + abs(s.slope.y));
+    s.least = max(behind, s.least);
+    float visibility;
+    float radius = searchBlockers(light, s, k, visibility);
+    return radius < 0.0 ? visibility : filterPenumbra(light, s, k, radius);
+}
+
+#endif

@@ -1,0 +1,103 @@
+// The kernel of a soft shadow: where its taps lie in the map.
+#ifndef GNOMON_VISIBILITY_PCSS_KERNEL_GLSL
+#define GNOMON_VISIBILITY_PCSS_KERNEL_GLSL
+
+#include "visibility/shadowmap.glsl"
+
+// Nearer blockers are searched for as if they were at this share of the receiver's depth.
+const float kNearestBlocker = 0.1;
+// A texel that touches a tap's bilinear footprint is at most this far aside.
+const float kTapTexels = 1.5;
+
+struct PcssKernel {
+    vec2 right;   // texels per tangent (perspective) or per metre, along the pattern's axes, which the pixel turns, in
+    vec2 down;    // the disk that the receiver sees
+    float texel;     // one texel in the unit of radii
+    float widest;    // radius of the search, without its margin of a texel
+    float radius0;   // radius of the source's disk at depth d: radius0 + radius1 * d, radius1 at least 0
+    float radius1;
+    bool cube;  // point light: taps that leave the face look at another
+};
+
+// Cosine and sine. 32 bits are a turn; in whole numbers, since every pipeline must have the same.
+vec2 turnOf(uvec2 pixel) {
+    uint turn = pixel.x * 3242174889u + pixel.y * 2447445414u + frame.patternTurn;
+    precise float f = float((turn << 2u) >> 8u) * (1.0 / 16777216.0);
+    precise float t = (2.0 * f - 1.0) * 0.41421356;  // tangent of half an angle within 45 degrees
+    precise float inverse = 1.0 / (1.0 + t * t);
+    precise vec2 d = vec2((1.0 - t * t) * inverse, 2.0 * t * inverse);
+    uint quadrant = turn >> 30u;
+    if ((quadrant & 1u) != 0u) d = vec2(-d.y, d.x);
+    return (quadrant & 2u) != 0u ? -d : d;
+}
+
+// Off the view's axis the disk, which faces the receiver, is stretched outward.
+void placeDisk(ShadowPoint s, vec2 pxPerUnit, vec2 turn, inout PcssKernel k) {
+    precise float stretch = 1.0 / (1.0 + rayLength(s.tangent));
+    precise vec2 across = s.tangent * stretch;
+    precise vec2 x = vec2(fma(s.tangent.x, across.x, 1.0), s.tangent.x * across.y) * pxPerUnit;
+    precise vec2 y = vec2(s.tangent.x * across.y, fma(s.tangent.y, across.y, 1.0)) * pxPerUnit;
+    precise vec2 right = x * turn.x + y * turn.y;
+    precise vec2 down = y * turn.x - x * turn.y;
+    k.right = right;
+    k.down = down;
+}
+
+PcssKernel pcssKernelOf(GpuLight light, ShadowPoint s, uvec2 pixel) {
+    precise float a = shadowViews[s.view].depthFromLinearA;
+    precise float inverseB = 1.0 / shadowViews[s.view].depthFromLinearB;
+    vec2 pxPerUnit = shadowViews[s.view].pxPerMetre;
+    precise float r = light.sourceRadius;
+    PcssKernel k;
+    precise float radius0, radius1, widest;
+    if (isOrthographicView(shadowViews[s.view])) {
+        radius1 = -r * inverseB * s.sign;
+        radius0 = r * (s.linear + a * inverseB);
+        widest = max(s.sign > 0.0 ? radius0 + radius1 : radius0, 0.0);
+    } else {
+        precise float seen = r / s.linear;
+        radius1 = r * inverseB * s.sign;
+        radius0 = -r * (a * inverseB) - seen;
+        widest = (1.0 / kNearestBlocker - 1.0) * seen;
+    }
+    precise float texel = 1.0 / max(pxPerUnit.x, pxPerUnit.y);
+    precise float cut = min(widest, float(kMaxPcssRadiusPx) * texel);
+    placeDisk(s, pxPerUnit, turnOf(pixel), k);
+    k.texel = texel;
+    k.widest = cut;
+    k.radius0 = radius0;
+    k.radius1 = radius1;
+    k.cube = lightType(light) == kLightPoint;
+    return k;
+}
+
+// Directions of the taps, in the pattern's axes: multiples of the golden angle, pi (3 - sqrt 5), from (1, 0) on. One
+// turned into the next, not a table: Mesa's lavapipe takes half a minute to compile a loop that reads one.
+// Source: Vogel 1979, "A better way to construct the sunflower head".
+vec2 nextDirection(vec2 d) {
+    const float cosine = -0.7373688780783197;
+    const float sine = 0.6754902942615238;
+    precise vec2 turned = vec2(fma(cosine, d.x, -sine * d.y), fma(sine, d.x, cosine * d.y));
+    return turned;
+}
+
+// A tap at radius 1, in texels from the receiver.
+vec2 tapOffset(PcssKernel k, vec2 direction) {
+    precise vec2 offset = vec2(fma(k.right.x, direction.x, k.down.x * direction.y),
+                               fma(k.right.y, direction.x, k.down.y * direction.y));
+    return offset;
+}
+
+// Half the sides of a box that holds the texels of all taps within a radius.
+vec2 tapExtent(PcssKernel k, float radius) {
+    return radius * (abs(k.right) + abs(k.down)) + kTapTexels;
+}
+
+bool mayLeave(ShadowPoint s, PcssKernel k, float radius) {
+    vec2 extent = tapExtent(k, radius);
+    return any(lessThan(s.corner + 0.5 - extent, s.rectMin)) || any(greaterThan(s.corner + 0.5 + extent, s.rectMax));
+}
+
+#include "visibility/cube_faces.glsl"
+
+#endif

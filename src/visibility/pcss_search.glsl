@@ -1,0 +1,119 @@
+// The search for blockers of a soft shadow, and what the shadow bounds spare of it.
+#ifndef GNOMON_VISIBILITY_PCSS_SEARCH_GLSL
+#define GNOMON_VISIBILITY_PCSS_SEARCH_GLSL
+
+#include "visibility/pcss_kernel.glsl"
+#include "shadow_bounds/shadow_bounds.glsl"
+
+// Loops over taps count to numbers of the frame: a compiler that knew them would unroll the loops, at the cost of
+// registers. With one preset there is nothing to choose.
+layout(constant_id = kSpecPcssPresets) const uint kPcssPresets = 1;
+
+uint pcssPresetOf(GpuLight light) {
+    return kPcssPresets == 1u ? 0u : light.typeAndFlags >> kLightPcssPresetShift & kLightPcssPresetMask;
+}
+
+// What a search has found.
+struct Blockers {
+    float blocking;  // texels
+    float depths;    // sum over them
+    bool allOcclude;
+};
+
+// `farthest`: what is stored farther from the light than this is out of the source's sight at the tap's radius.
+void countBlockers(vec4 plane, vec4 stored, float farthest, inout Blockers found) {
+    found.allOcclude = found.allOcclude && all(greaterThan(stored, plane));
+    precise vec4 blocks = vec4(greaterThan(stored, max(plane, vec4(farthest))));
+    precise float blocking = found.blocking + ((blocks.x + blocks.y) + (blocks.z + blocks.w));
+    precise float depths = fma(blocks.x, stored.x, found.depths);
+    depths = fma(blocks.y, stored.y, depths);
+    depths = fma(blocks.z, stored.z, depths);
+    depths = fma(blocks.w, stored.w, depths);
+    found.blocking = blocking;
+    found.depths = depths;
+}
+
+// What the shadow bounds tell of a search of radius `reach` that stays in the rectangle. True where they tell all. Else
+// `needed` is the radius beyond which no blocker can be: the nearest depth in the region bounds what the source can see
+// of it, and a smaller region may hold only farther ones.
+bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, out float needed, out float visibility) {
+    needed = reach;
+    visibility = 1.0;
+    for (uint i = 0u; i < 2u; ++i) {
+        vec2 extent = tapExtent(k, needed);
+        bool known;
+        vec2 bounds = shadowBoundsOver(s.view, s.corner + 0.5 - extent, s.corner + 0.5 + extent, known);
+        if (!known) return false;
+        float nearest = s.sign > 0.0 ? bounds.y : -bounds.x;
+        float farthest = s.sign > 0.0 ? bounds.x : -bounds.y;
+        float rise = dot(abs(s.slope), extent);
+        float slack = 1e-6 + 1e-5 * rise;  // the taps' own rounding
+        if (nearest <= max(s.depth - rise - slack, s.least)) return true;
+        visibility = 0.0;
+        if (i == 0u && farthest > max(s.depth + rise + slack, s.least)) return true;
+        visibility = 1.0;
+        // The region of the source grows toward the light.
+        float seen = fma(k.radius1, nearest, k.radius0) + kTapTexels * k.texel;
+        seen += 1e-5 * abs(seen) + 1e-6 * (abs(k.radius0) + k.radius1);
+        if (!(seen < needed)) return false;
+        needed = max(seen, 0.0);
+    }
+    return false;
+}
+
+float searchRadius(uint preset, uint tap, float reach) {
+    precise float share = (float(tap) + 0.5) * frame.pcssTaps[preset].perSearchTap;
+    precise float radius = share * share * reach;
+    return radius;
+}
+
+// The filter's radius; or below 0 where no filter is needed, and then `visibility` is known. Two loops: where all taps
+// stay inside the rectangle, nothing stands between the texture reads.
+float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visibility) {
+    uint preset = pcssPresetOf(light);
+    precise float reach = k.widest + k.texel;
+    // A depth is in the source's sight at a radius from (radius - radius0 - margin) / radius1 on.
+    precise float inverse = k.radius1 > 0.0 ? 1.0 / k.radius1 : 0.0;
+    precise float farthest0 = k.radius1 > 0.0 ? -(k.radius0 + kTapTexels * k.texel) * inverse : -2.0;
+    Blockers found = Blockers(0.0, 0.0, true);
+    vec2 direction = vec2(1.0, 0.0);
+    if (!mayLeave(s, k, reach)) {
+        float needed;
+        if (knownByBounds(s, k, reach, needed, visibility)) return -1.0;
+        for (uint i = 0u; i < frame.pcssTaps[preset].searchTaps; ++i) {
+            float radius = searchRadius(preset, i, reach);
+            if (radius > needed && !found.allOcclude) break;  // beyond, there is no blocker
+            vec2 offset = tapOffset(k, direction);
+            direction = nextDirection(direction);
+            precise vec2 first = floor(fma(offset, vec2(radius), s.corner));
+            vec4 stored = gatherShadowTexels(s, first);
+            countBlockers(planeDepthsAt(s, first), stored, fma(radius, inverse, farthest0), found);
+        }
+    } else {
+        for (uint i = 0u; i < frame.pcssTaps[preset].searchTaps; ++i) {
+            float radius = searchRadius(preset, i, reach);
+            vec2 offset = tapOffset(k, direction);
+            direction = nextDirection(direction);
+            precise vec2 corner = fma(offset, vec2(radius), s.corner);
+            vec4 plane, stored;
+            if (leavesFace(s, k, corner)) {
+                float planeThere, storedThere;
+                otherFace(light, s, i, corner + 0.5, planeThere, storedThere);
+                plane = vec4(planeThere);
+                stored = vec4(storedThere);
+            } else {
+                precise vec2 first = floor(clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));
+                plane = planeDepthsAt(s, first);
+                stored = gatherShadowTexels(s, first);
+            }
+            countBlockers(plane, stored, fma(radius, inverse, farthest0), found);
+        }
+    }
+    visibility = found.allOcclude ? 0.0 : 1.0;
+    if (found.blocking == 0.0 || found.allOcclude) return -1.0;
+    precise float mean = found.depths / found.blocking;
+    precise float radius = clamp(fma(k.radius1, mean, k.radius0), k.texel, max(k.widest, k.texel));
+    return radius;
+}
+
+#endif

@@ -1,0 +1,90 @@
+#include "vulkan/recorder.h"
+
+namespace gnomon {
+
+bool BarrierTracker::conflicts(const Use& use, Access access) const noexcept {
+    switch (access) {
+        case Access::Uniform:
+        case Access::Streamed:
+        case Access::Sampled:
+            return false;  // the host's own; the library never writes them on the device
+        case Access::Read:
+        case Access::Indirect:
+            return use.written == barriers_;
+        case Access::Write:
+            return use.written == barriers_ || use.read == barriers_;
+    }
+    return true;
+}
+
+void BarrierTracker::note(Use& use, Access access) const noexcept {
+    if (access == Access::Write) use.written = barriers_;
+    if (access == Access::Read || access == Access::Indirect) use.read = barriers_;
+}
+
+void Recorder::barrier(VkPipelineStageFlags2 fromStage, VkAccessFlags2 fromAccess, VkPipelineStageFlags2 toStage,
+                       VkAccessFlags2 toAccess) noexcept {
+    VkMemoryBarrier2 barrier = {VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+    barrier.srcStageMask = fromStage;
+    barrier.srcAccessMask = fromAccess;
+    barrier.dstStageMask = toStage;
+    barrier.dstAccessMask = toAccess;
+    VkDependencyInfo info = {VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    info.memoryBarrierCount = 1;
+    info.pMemoryBarriers = &barrier;
+    device_.vk.CmdPipelineBarrier2(commands_, &info);
+    tracker_.barrier();
+}
+
+// Orders the pass after the earlier ones whose buffers it shares.
+void Recorder::order(const Pass& pass, const std::array<BoundSet, gpu::kSetCount>& sets) noexcept {
+    bool needed = false, indirect = false;
+    for (const PassResource& resource : pass.resources) {
+        const BarrierTracker::Use& use = sets[resource.set].uses[resource.binding];
+        if (!tracker_.conflicts(use, resource.access)) continue;
+        needed = true;
+        indirect = indirect || resource.access == Access::Indirect;
+    }
+    if (needed) {
+        const VkPipelineStageFlags2 stage = indirect ? VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT : 0;
+        const VkAccessFlags2 access = indirect ? VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT : 0;
+        barrier(kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCompute | stage, kStorage | access);
+    }
+    for (const PassResource& resource : pass.resources)
+        tracker_.note(sets[resource.set].uses[resource.binding], resource.access);
+}
+
+void Recorder::dispatch(const Pass& pass, VkPipeline pipeline, VkPipelineLayout layout,
+                        const std::array<BoundSet, gpu::kSetCount>& sets, const Dispatch& dispatch) noexcept {
+    const Functions& vk = device_.vk;
+    if (device_.debugLabels) {
+        VkDebugUtilsLabelEXT label = {VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT};
+        label.pLabelName = pass.name;
+        vk.CmdBeginDebugUtilsLabelEXT(commands_, &label);
+    }
+    order(pass, sets);
+    const Timeline::Row row =
+        timeline_ != nullptr ? timeline_->begin(commands_, pass.name, pass.phase, RowKind::Compute) : Timeline::kNone;
+    vk.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    for (std::uint32_t set = 0; set < gpu::kSetCount; ++set) {
+        bool used = false;
+        for (const PassResource& resource : pass.resources) used = used || resource.set == set;
+        if (!used) continue;
+        vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, layout, set, 1, &sets[set].handle, 0,
+                                 nullptr);
+    }
+    if (dispatch.indirect != VK_NULL_HANDLE) {
+        vk.CmdDispatchIndirect(commands_, dispatch.indirect, dispatch.offset);
+    } else {
+        vk.CmdDispatch(commands_, dispatch.x, dispatch.y, 1);
+    }
+    if (timeline_ != nullptr) timeline_->end(commands_, row);
+    if (device_.debugLabels) vk.CmdEndDebugUtilsLabelEXT(commands_);
+}
+
+void Recorder::publish() noexcept {
+    barrier(kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+            kStorage | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
+}
+
+}  // namespace gnomon

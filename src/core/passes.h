@@ -20,21 +20,15 @@ enum PassId : std::uint32_t {
     kPassCount,
 };
 
+using PassDeclaration = const Pass& (*)() noexcept;
+inline constexpr PassDeclaration kPasses[kPassCount] = {
+    hierarchicalDepthPass, findLightsApproximatePass, findLightsAccuratePass,
+    shadowBoundsPass,      generateShadowsPass,       gatherStatisticsPass,
+};
+static_assert(kPasses[kPassCount - 1] != nullptr, "a pass of the enumeration is not in the table");
+
 inline const Pass& passOf(PassId id) noexcept {
-    switch (id) {
-        case kPassHierarchicalDepth:
-            return hierarchicalDepthPass();
-        case kPassFindLightsApproximate:
-            return findLightsApproximatePass();
-        case kPassFindLightsAccurate:
-            return findLightsAccuratePass();
-        case kPassShadowBounds:
-            return shadowBoundsPass();
-        case kPassGenerateShadows:
-            return generateShadowsPass();
-        default:
-            return gatherStatisticsPass();
-    }
+    return kPasses[id]();
 }
 
 }  // namespace gnomon

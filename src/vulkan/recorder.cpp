@@ -36,19 +36,16 @@ void Recorder::barrier(VkPipelineStageFlags2 fromStage, VkAccessFlags2 fromAcces
     tracker_.barrier();
 }
 
-// Orders the pass after the earlier ones whose buffers it shares.
+// Orders the pass after the earlier ones whose buffers it shares. The barrier covers indirect commands whether or not
+// this pass has one: the tracker counts barriers, and so each of them must cover all that a pass may do.
 void Recorder::order(const Pass& pass, const std::array<BoundSet, gpu::kSetCount>& sets) noexcept {
-    bool needed = false, indirect = false;
-    for (const PassResource& resource : pass.resources) {
-        const BarrierTracker::Use& use = sets[resource.set].uses[resource.binding];
-        if (!tracker_.conflicts(use, resource.access)) continue;
-        needed = true;
-        indirect = indirect || resource.access == Access::Indirect;
-    }
+    bool needed = false;
+    for (const PassResource& resource : pass.resources)
+        needed = needed || tracker_.conflicts(sets[resource.set].uses[resource.binding], resource.access);
     if (needed) {
-        const VkPipelineStageFlags2 stage = indirect ? VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT : 0;
-        const VkAccessFlags2 access = indirect ? VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT : 0;
-        barrier(kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, kCompute | stage, kStorage | access);
+        const VkPipelineStageFlags2 stages = kCompute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
+        barrier(stages, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, stages,
+                kStorage | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
     }
     for (const PassResource& resource : pass.resources)
         tracker_.note(sets[resource.set].uses[resource.binding], resource.access);

@@ -33,9 +33,10 @@ void countBlockers(vec4 plane, vec4 stored, float farthest, inout Blockers found
     found.depths = depths;
 }
 
-// What the shadow bounds tell of a search of radius `reach` that stays in the rectangle. True where they tell all. Else
-// `needed` is the radius beyond which no blocker can be: the nearest depth in the region bounds what the source can see
-// of it, and a smaller region may hold only farther ones.
+// What the shadow bounds tell of a search of radius `reach` that stays in the rectangle. True where they tell its whole
+// result. Else `needed` is the radius beyond which no blocker can be. It is found in two rounds: the nearest depth in a
+// region bounds what the source can see of the region, and the smaller region that is left may hold only farther
+// depths.
 bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, out float needed, out float visibility) {
     needed = reach;
     visibility = 1.0;

@@ -1,14 +1,14 @@
 #pragma once
 // A scene on the device.
 //
-// Geometry is pulled by the vertex shaders from storage buffers: positions as tight floats, packed attributes, u32
-// indices that count from the scene's first vertex. A *draw item* is one primitive of one instance. Triangles are drawn
-// in clusters, sorted by place; triangle ids count through all draw items, and triangle() leads back to the scene.
+// - Vertex shaders pull geometry from storage buffers: positions as tight floats, packed attributes, u32 indices that
+//   count from the scene's first vertex.
+// - A *draw item* is one primitive of one instance. Triangles are drawn in clusters, sorted by place.
+// - Triangle ids count through all draw items, and triangle() leads back to the scene.
+// - What deforms has vertices of its own, which are uploaded whenever a pose changes them, and one bound for all of it.
 //
-// Large worlds: object positions far from their own origin are stored relative to the primitive's centre, and the
-// matrices are computed in double relative to the frame's origin, so nothing large is ever subtracted in a shader.
-//
-// What deforms has vertices of its own, which are uploaded whenever a pose changes them, and one bound for all of it.
+// Large worlds: object positions far from their own origin are stored relative to the primitive's centre. The matrices
+// are computed in double, relative to the frame's origin. So nothing large is ever subtracted in a shader.
 
 #include <cstdint>
 #include <functional>

@@ -46,8 +46,8 @@ struct GpuLight {
     uint shadowView;     // first shadow view (points: of six, +X -X +Y -Y +Z -Z; cascades: nearest), or kNoShadowView
     uint hostIndex;      // index into the light array that the host gave
     float lightFade;     // above 0 to 1, multiplies the light
-    // Visibility = 1 - fade * (1 - visibility); fade = shadowFade, 0..1; directional lights: shadowFade +
-    // shadowFadePerMetre * distance between pixel and eye, cut to 0..1.
+    // The shadow's fade: visibility becomes 1 - fade * (1 - visibility). fade is shadowFade, 0..1. For directional
+    // lights it is shadowFade + shadowFadePerMetre * distance between pixel and eye, cut to 0..1.
     float shadowFade;
     float biasMetres;  // depth bias of this light
     float shadowFadePerMetre;

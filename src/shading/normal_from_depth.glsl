@@ -47,8 +47,8 @@ float weightOf(float bend, float least) {
     return weight;
 }
 
-// Slope of the device depth per pixel along an axis at a pixel of depth d. `rounding` of d; `steep`: the slope of the
-// steepest face that a bent row may tell.
+// Slope of the device depth per pixel along an axis, at a pixel of depth d. `rounding`: what rounding may make of d.
+// `steep`: the slope of the steepest face that a bent row may tell.
 float depthSlope(ivec2 pixel, ivec2 axis, float d, float rounding, float steep) {
     float a1 = neighbourDepth(pixel + axis), a2 = neighbourDepth(pixel + 2 * axis);
     float b1 = neighbourDepth(pixel - axis), b2 = neighbourDepth(pixel - 2 * axis);

@@ -25,14 +25,14 @@
 const float kLeastCosine = 0.005;
 const float kSnapPx = 1.0 / 16.0;
 
-// |rays| of a view through ndc, as a multiple of linear depth; `tangent` is where: lateral over linear depth.
+// Length of the ray through a place of a view, for linear depth 1. `tangent` is the place: lateral over linear depth.
 float rayLength(vec2 tangent) {
     precise float squared = tangent.x * tangent.x + (tangent.y * tangent.y + 1.0);
     return sqrt(squared);
 }
 
-// Slope of the device depth of the plane through the receiver with face normal n, per texel. `ndc`, `linear` and
-// `tangent` are the receiver's in the view. `linearPerMetre`: how much linear depth a metre across the face is.
+// Slope per texel of the device depth of a plane: the one through the receiver with face normal n. `ndc`, `linear` and
+// `tangent` are the receiver's place in the view. `linearPerMetre`: how much linear depth a metre off the plane is.
 vec2 planeSlope(GpuShadowView view, bool orthographic, vec3 n, vec2 ndc, float linear, vec2 tangent,
                 out float linearPerMetre) {
     precise vec3 m = vec3(dot(n, view.planeX), dot(n, view.planeY), dot(n, view.planeZ));

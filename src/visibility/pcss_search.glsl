@@ -5,8 +5,8 @@
 #include "visibility/pcss_kernel.glsl"
 #include "shadow_bounds/shadow_bounds.glsl"
 
-// Loops over taps count to numbers of the frame: a compiler that knew them would unroll the loops, at the cost of
-// registers. With one preset there is nothing to choose.
+// Loops over taps count to numbers of the frame, not to constants: a compiler that knew the numbers would unroll the
+// loops, at the cost of registers. With one preset there is nothing to choose.
 layout(constant_id = kSpecPcssPresets) const uint kPcssPresets = 1;
 
 uint pcssPresetOf(GpuLight light) {
@@ -68,8 +68,8 @@ float searchRadius(uint preset, uint tap, float reach) {
     return radius;
 }
 
-// The filter's radius; or below 0 where no filter is needed, and then `visibility` is known. Two loops: where all taps
-// stay inside the rectangle, nothing stands between the texture reads.
+// Returns the filter's radius. Below 0 no filter is needed, and `visibility` is known. There are two loops, so that
+// nothing stands between the texture reads where all taps stay inside the rectangle.
 float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visibility) {
     uint preset = pcssPresetOf(light);
     precise float reach = k.widest + k.texel;

@@ -40,8 +40,8 @@ float viewVisibility(uint viewIndex, GpuLight light, Receiver receiver) {
     return 1.0;
 }
 
-// The first cascade that holds the receiver, blended with the next one where that holds it too; the last blends into
-// light.
+// The first cascade that holds the receiver. It is blended with the next one where that holds the receiver, too. The
+// last one blends into light.
 float cascadedVisibility(GpuLight light, Receiver receiver) {
     uint count = cascadeCount(light);
     float border;

@@ -1,6 +1,6 @@
 #pragma once
-// The subcommands. Each adds itself to the command line; parsing one that is used sets `chosen` to the work to be done,
-// which returns the exit code.
+// The subcommands. Each adds itself to the command line. Parsing sets `chosen` to the work of the one that is used. The
+// work returns the exit code.
 
 #include <CLI/CLI.hpp>
 #include <functional>

@@ -210,11 +210,12 @@ std::vector<Row> rowsOf(const Device& device, std::uint32_t lanes) {
 // --- Occupancy -------------------------------------------------------------------------------------------------------
 
 // How many waves an RDNA2 SIMD holds at once. RADV's own "Subgroups per SIMD" counts in units of 32 lanes, whatever the
-// wave's width, and knows no upper bound on the null device, so it is computed here from AMD's figures for RDNA2
-// ("RDNA 2" instruction set reference; Mesa's ac_gpu_info.c):
-//   registers  1024 per lane of a 32-wide SIMD, given out by 16 to waves of 32 and, a lane pair each, by 8 to waves of
-//   64 waves      16 per SIMD of either width LDS        128 KiB per work group processor of 4 SIMDs, given out by 1
-//   KiB to a work group (of 64 lanes here)
+// wave's width, and knows no upper bound on the null device. So it is computed here from AMD's figures for RDNA2 ("RDNA
+// 2" instruction set reference; Mesa's ac_gpu_info.c):
+// - Registers: 1024 per lane of a 32-wide SIMD, given out by 16 to waves of 32. A register of a wave of 64 takes two of
+//   them. So waves of 64 have 512, given out by 8.
+// - Waves: 16 per SIMD of either width.
+// - LDS: 128 KiB per work group processor of 4 SIMDs, given out by 1 KiB to a work group (of 64 lanes here).
 std::uint32_t rdna2WavesPerSimd(std::uint64_t vgprs, std::uint64_t ldsBytes, std::uint32_t lanes) {
     const std::uint64_t registers = lanes == 32 ? 1024 : 512, granule = lanes == 32 ? 16 : 8;
     const std::uint64_t allocated = std::max<std::uint64_t>((vgprs + granule - 1) / granule, 1) * granule;

@@ -23,8 +23,8 @@ struct RendererDesc {
     std::uint32_t mostListEntries = 0, mostVisibilitySlots = 0;  ///< to which pools may grow by themselves; 0: not
     /// Pixels across. 0: 4096 for frames up to 1920x1080, above 8192; at most what the device has.
     std::uint32_t atlasSizePx = 0;
-    /// Ways of drawing shadowmaps (FrameSettings::drawing) that keep an atlas and a view of their own. Beyond, the one
-    /// unused for longest is drawn again. More than one for measurements that go to and fro.
+    /// How many ways of drawing shadowmaps (FrameSettings::drawing) keep an atlas and a View of their own. A further
+    /// way takes those that were unused for longest. More than one is for measurements that go to and fro.
     std::uint32_t keptDrawings = 1;
 };
 
@@ -60,15 +60,15 @@ public:
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    /// Of the frames from now on. Images grow where the extent is larger than any before, which waits for the device;
-    /// pipelines that are new are made with the next frame, or by prepare().
+    /// Settings of the frames from now on. Where the extent is larger than any before, images grow, which waits for the
+    /// device. Pipelines that are new are made with the next frame, or by prepare().
     void set(const FrameSettings& settings);
     [[nodiscard]] const FrameSettings& settings() const;
     /// Makes the pipelines that the next frame of this mode needs.
     void prepare(ShadowMode mode);
 
-    /// Records and submits one frame, which shows the scene's animations at a time; lights follow their nodes, and so
-    /// does the camera, if it is one of the scene's. Waits only for the frame before the last. Returns its number.
+    /// Records and submits one frame, which shows the scene's animations at a time. Lights follow their nodes. So does
+    /// the camera, if it is one of the scene's. Waits only for the frame before the last. Returns the frame's number.
     std::uint64_t renderFrame(const SceneCamera& camera, ShadowMode mode, double timeSeconds = 0.0);
     /// Waits until everything submitted has finished.
     void wait();

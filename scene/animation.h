@@ -1,9 +1,9 @@
 #pragma once
 // What moves: nodes, skins, morph targets and animations of a scene, and the pose they take at a time.
 //
-// A scene's nodes form a forest whose parents come before their children. An instance, light or camera that hangs on a
-// node moves with it; all others stand still, at the cost of nothing. Vertices are deformed on the CPU, so that the ray
-// tracer, the shadowmaps and the G-buffer see the very same triangles.
+// A scene's nodes form a forest. Parents come before their children. An instance, light or camera that hangs on a node
+// moves with it. All others stand still, and cost nothing. Vertices are deformed on the CPU, so that the ray tracer,
+// the shadowmaps and the G-buffer see the very same triangles.
 // Source: Khronos glTF 2.0 specification, sections 3.7 (skins, morph targets), 3.11 and appendix C (interpolation).
 
 #include <cstdint>

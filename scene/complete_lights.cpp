@@ -1,14 +1,18 @@
 // Ranges and source sizes for lights that come without.
 //
-// The inverse square never ends, but a tiled renderer wants an end. A cut-off in lux would need the scene's unit and
-// exposure, and files give neither: intensities run from 1 to 109,000 and sizes from 1.8 to 250,000 units. So the rule
-// uses ratios of the scene alone:
-//   spacing   d = diagonal of the scene / (2 * cube root of the number of local lights): how far a light is from what
-//   it lights middle    I = median peak intensity of the local lights that shine cut-off   E = I / d^2 / kFaintest:
-//   what such a light gives at that distance, lowered until nobody sees it go range     r = sqrt(peak / E), at most 2 *
-//   diagonal
-// kFaintest = 100 is 6.6 stops below what the picture is exposed for. The lighting also fades
-// to zero towards the range, so there is no edge. docs/scenes.md repeats the rule for users.
+// Problem: the inverse square never ends, but a tiled renderer wants an end. A cut-off in lux would need the scene's
+// unit and exposure. Files give neither: intensities run from 1 to 109,000, and sizes from 1.8 to 250,000 units.
+// Here: the rule uses ratios of the scene alone.
+//
+//     spacing   d = diagonal of the scene / (2 * cube root of the number of local lights)
+//               how far a light is from what it lights
+//     middle    I = median peak intensity of the local lights that shine
+//     cut-off   E = I / d^2 / kFaintest
+//               what such a light gives at that distance, lowered until nobody sees it go
+//     range     r = sqrt(peak / E), at most 2 * diagonal
+//
+// kFaintest = 100 is 6.6 stops below what the picture is exposed for. The lighting also fades to zero towards the
+// range, so there is no edge. docs/scenes.md repeats the rule for users.
 
 #include <algorithm>
 #include <cmath>

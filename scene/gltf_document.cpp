@@ -1,7 +1,9 @@
-// Opening a glTF file. The JSON is parsed once to check its shape and to take out what the loader reads by itself
-// (buffers, images, animations), and the rest goes to tinygltf. Reasons, all met with tinygltf 2.7: it
-// reads eight bytes past a GLB whose last chunk is too long, forms addresses from unchecked image views, drops
-// primitives that it cannot parse without a word, and refuses Draco files when built without Draco.
+// Opening a glTF file. The JSON is parsed once, to check its shape and to take out what the loader reads by itself
+// (buffers, images, animations). The rest goes to tinygltf. The reasons were all met with tinygltf 2.7:
+// - it reads eight bytes past a GLB whose last chunk is too long;
+// - it forms addresses from unchecked image views;
+// - it drops primitives that it cannot parse without a word;
+// - it refuses Draco files when built without Draco.
 
 #include "scene/gltf_document.h"
 

@@ -1,7 +1,8 @@
 #pragma once
-// A glTF file taken apart. tinygltf turns the JSON into structs; the bytes never pass through it. Buffers are read on
-// first use, so that a broken part which nothing drawn refers to does no harm, and so that every byte range has one
-// check. Inside the loader a refusal is an exception with the sentence for the user; loadGltf() alone catches it.
+// A glTF file taken apart. tinygltf turns the JSON into structs; the bytes never pass through it.
+//
+// Buffers are read on first use. So a broken part which nothing drawn refers to does no harm, and every byte range has
+// one check. Inside the loader a refusal is an exception with the sentence for the user. loadGltf() alone catches it.
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>

@@ -1,8 +1,8 @@
 #pragma once
 // The pose of a scene at a time: where its nodes, instances, lights and cameras are, and the vertices of what deforms.
 //
-// Node transforms are kept in double. Vertices are floats: those of a skinned instance count from an anchor near its
-// joints, on a grid of kAnchorGridMetres, so that a figure far from the scene's origin is as smooth as one near it.
+// Node transforms are kept in double. Vertices are floats. Those of a skinned instance count from an anchor near its
+// joints, on a grid of kAnchorGridMetres. So a figure far from the scene's origin is as smooth as one near it.
 // Everything is computed on the CPU, so that whatever draws or traces the scene meets the very same triangles.
 
 #include <cstdint>

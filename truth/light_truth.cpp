@@ -16,8 +16,9 @@ constexpr int kEdgePoints = 8;
 constexpr double kLeastCosine = 0.1;
 // A result's face normal has 16 bits, and within them it may see a face look at the light or away from it.
 constexpr double kUndecidedCosine = 1e-4;
-// A neighbour that continues a face is as flat as floats can say: a share of the mesh's own coordinates. (A share of
-// the world's, 4 km from the origin, would let rays out of whatever lies flat on a grazed face.)
+// A neighbour that continues a face is as flat as floats can say. How flat that is, is a share of the mesh's own
+// coordinates. (A share of the world's, 4 km from the origin, would let rays out of whatever lies flat on a grazed
+// face.)
 constexpr double kFlatness = 1.2e-7;
 constexpr std::size_t kPixelsAtOnce = 512;
 

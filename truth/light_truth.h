@@ -69,9 +69,9 @@ struct LightTruth {
 [[nodiscard]] LightTruth traceLight(const TracedScene& scene, std::span<const TruthReceiver> receivers,
                                     TruthExtent extent, const LightTruthDesc& desc);
 
-/// Adds soft truth, where there is none yet, to the pixels at which `result` disagrees: a visibility for each pixel of
-/// the picture, below 0 where it is not judged. One truth can so judge any number of results. All but the result as
-/// traceLight() had it. A pixel's soft truth depends on neither the results nor their order.
+/// Adds soft truth, where there is none yet, to the pixels at which `result` disagrees. `result` is a visibility for
+/// each pixel of the picture, below 0 where it is not judged. All other arguments are those of traceLight(). One truth
+/// can so judge any number of results: a pixel's soft truth depends on neither the results nor their order.
 void completeSoftTruth(LightTruth& truth, const TracedScene& scene, std::span<const TruthReceiver> receivers,
                        const LightTruthDesc& desc, std::span<const float> result);
 

@@ -18,8 +18,8 @@ namespace {
 // What float rounding does to a hit, as a share of the coordinates: a few steps of 2^-24 each for the corners, the
 // ray's start, its direction and the intersection.
 constexpr double kFloatError = 1e-6;
-// Nearer to the start than so many float errors, a triangle is exactly as large as it is: there an edge that is too
-// long would stand above the point's own surface.
+// Nearer to the ray's start than so many float errors, a triangle is not enlarged: there an edge that is too long would
+// stand above the point's own surface.
 constexpr double kStrictNear = 1e3;
 
 // As the renderer has it: flatter instances are not drawn.

@@ -1,15 +1,18 @@
 #pragma once
 // The triangles of a posed scene, to be met by shadow rays.
 //
-// Problem: Embree computes in float, and a float has no idea on which side of its own surface a point lies: a ray that
+// Problem: Embree computes in float. Floats do not tell on which side of its own surface a point lies. So a ray that
 // starts there meets that surface, or the coplanar neighbour, a few micrometres ahead.
-// Plain way: an offset along the normal or the ray, which is a depth bias again, in the very thing that shall judge
-// biases. Here: Embree only proposes. Its rays start a little before the point; every triangle that it offers is met
-// again in double, from the point itself, and must lie farther from it than double arithmetic errs. The triangle that
-// the point lies on is left out by its number. Limits: a triangle is taken to be a few float steps larger where the ray
-// passes its edge far from its start, so that no light falls through seams that Embree saw a step beside the true ones.
-// Alpha masks are read at the finest mip. Instances that a flat matrix makes nothing of are not drawn, and do not
-// block.
+// Plain way: an offset along the normal or the ray. That is a depth bias again, in the very thing that shall judge
+// biases.
+// Here: Embree only proposes.
+// - Its rays start a little before the point.
+// - Every triangle that it offers is met again in double, from the point itself. It must lie farther from the point
+//   than double arithmetic errs.
+// - The triangle that the point lies on is left out by its number.
+// Limits: a triangle is taken to be a few float steps larger where the ray passes its edge far from its start. So no
+// light falls through seams that Embree saw a step beside the true ones. Alpha masks are read at the finest mip.
+// Instances that a flat matrix makes nothing of are not drawn, and do not block.
 
 #include <array>
 #include <cstdint>

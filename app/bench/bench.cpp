@@ -1,5 +1,5 @@
-// Measures variants in one process, in turn, frame by frame: whatever the machine does meanwhile (clocks, heat, other
-// work) meets all of them alike, and the ratio is the result.
+// Measures variants in one process, in turn, frame by frame. So whatever the machine does meanwhile (clocks, heat,
+// other work) meets all of them alike. The ratio is the result.
 
 #include <fmt/format.h>
 

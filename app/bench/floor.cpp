@@ -1,14 +1,15 @@
-// Every number is what has to move if each byte is read or written once per pass, and all else comes from caches:
+// The floors of passes. Each counts what has to move if every byte is read or written once per pass, and all else comes
+// from caches:
 //
-//   receivers  depth 4 B of every pixel; face normal 4 B and receiver flags 2 B of those that show geometry
-//              (taken as all 64 of every tile that shows any)
-//   lights     96 B of every visible light, and 32 B of the host's own data while lighting
-//   lists      4 B per tile for each of counts and SlotIDs; early entries 4/3 B, final entries 4 B
-//   slots      64 B (32 B with 4 bits) of every stored pair of tile and light
-//   shadowmap  of every pair of pixel and casting light the filter's samples, and 4 B: shadow views are sized to
-//              about a texel per pixel, and neighbours share their taps
+//     receivers  4 B of depth of every pixel; 4 B of face normal and 2 B of receiver flags of those that show geometry
+//                (taken as all 64 of every tile that shows any)
+//     lights     96 B of every visible light, and 32 B of the host's own data while lighting
+//     lists      4 B per tile for each of counts and SlotIDs; early entries 4/3 B, final entries 4 B
+//     slots      64 B (32 B with 4 bits) of every stored pair of tile and light
+//     shadowmap  of every pair of pixel and casting light the filter's samples, and 4 B: shadow views are sized to
+//                about a texel per pixel, and neighbours share their taps
 //
-// Pairs of pixel and casting light are counted as 64 per casting early entry. That is an upper bound: pixels that the
+// Pairs of pixel and casting light are counted as 64 per casting early entry. That is an upper bound. Pixels that the
 // light does not reach, or whose face looks away from it, take no samples, and no statistic counts them. So the floor
 // of a pass that evaluates shadows may lie above its time.
 #include "app/bench/floor.h"

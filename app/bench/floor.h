@@ -1,6 +1,6 @@
 #pragma once
-// The floor of a compute pass: the time that the bytes and texture samples which it cannot do without need at the
-// device's own measured rates (renderer/rates). Arithmetic is not in it.
+// The floor of a compute pass. The pass cannot do without certain bytes and texture samples. The floor is the time that
+// these take at the device's own measured rates (renderer/rates). Arithmetic is not in it.
 
 #include <cstdint>
 #include <optional>

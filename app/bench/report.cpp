@@ -9,8 +9,8 @@
 namespace gnomon::app {
 namespace {
 
-// The shadow filter's samples per pixel and light: what its shader does (src/generate_shadows).
-// Of lights that take turns, the mean.
+// The shadow filter's samples per pixel and light: what its shader does (src/visibility). Where lights take turns with
+// filters, the mean of these.
 FilterSamples samplesOf(const renderer::FrameSettings& settings) {
     FilterSamples samples;
     const double share = 1.0 / static_cast<double>(settings.filters.size());

@@ -23,8 +23,8 @@ constexpr Colour kNotCounted = {0.16f, 0.18f, 0.28f};
 constexpr Colour kAway = {0.22f, 0.15f, 0.05f};
 constexpr Colour kPenumbra = {0.25f, 0.95f, 0.35f};
 
-// What a pixel shows: the higher, the worse. Errors of the resolution, and what is hardly seen, let the frame through;
-// from kDots on, single pixels are drawn as dots.
+// What a pixel shows: the higher, the worse. Errors of the resolution, and what is hardly seen, let the frame shine
+// through. From kDots on, single pixels are drawn as dots.
 enum Kind : std::uint8_t { kRight, kFaintLeak, kFaintAcne, kEdge, kContact, kDots, kLeak = kDots, kAcne, kKinds };
 constexpr float kOpacities[kKinds] = {0.0f, 0.6f, 0.6f, 0.5f, 1.0f, 1.0f, 1.0f};
 constexpr Colour kColours[kKinds] = {{0, 0, 0},           {0.55f, 0.80f, 1.0f}, {1.0f, 0.62f, 0.55f}, {0.95f, 0.80f, 0},

@@ -43,7 +43,7 @@ struct PrepareReport {
     std::uint32_t visible = 0;      ///< in the lists: at most 1024
     std::uint32_t dropped = 0;      ///< visible too, but beyond 1024
     std::uint32_t directional = 0;  ///< of the visible ones
-    std::uint32_t casting = 0;  ///< of the visible ones: those that want shadow views; after write(), that have them
+    std::uint32_t casting = 0;  ///< of the visible ones: after run(), that want shadow views; after write(), that have
 };
 
 /// A visible light, as the view sees it.
@@ -54,8 +54,9 @@ struct LightOnScreen {
     bool casts = false;
     Filter filter = Filter::Pcss;  ///< as given
     std::uint8_t pcssPreset = 0;   ///< likewise
-    /// Pixels across, uncut: the sphere around all that it reaches, and its source. As seen from no nearer than half
-    /// the radius; a directional light reaches everything (infinity), and its source has its angular diameter.
+    /// Pixels across of the sphere around all that it reaches, and of its source. Neither is cut by the view's borders.
+    /// The eye is taken to be no nearer to a sphere's centre than half its radius. A directional light reaches
+    /// everything (infinity), and its source has its angular diameter.
     float reachDiameterPx = 0.0f;
     float sourceDiameterPx = 0.0f;
     /// Share of the view that its reach covers, 0 to 1, counted in squares of 32 pixels and rounded up.

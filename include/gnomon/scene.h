@@ -45,8 +45,8 @@ struct Light {
     /// Metres; the light has no influence beyond. 0: derived from `intensity` as the distance at which an unshadowed
     /// surface facing the light receives PrepareDesc::rangeCutoffLux. Ignored for directional lights.
     float rangeMetres = 0.0f;
-    /// Candela (lux for directional lights); 0: the light is off. Else used for a missing range and for the choice
-    /// among too many lights only: what the host's shader makes of the light is its own business. At least 0.
+    /// Candela (lux for directional lights), at least 0. 0: the light is off. Else it serves two things only: a missing
+    /// range, and the choice among too many lights. What the host's shader makes of the light is its own business.
     float intensity = 1.0f;
     /// Spot: half-angle of the cone in radians, above 0 and below pi/2 (checked: at most 1.55).
     float outerConeAngle = 0.785398163f;
@@ -93,8 +93,8 @@ struct ShadowView {
     float farMetres = std::numeric_limits<float>::infinity();  ///< infinity allowed for perspective views
     bool orthographic = false;
     DeviceDepth deviceDepth = DeviceDepth::ReversedZ;
-    /// False promises that the View's previous frame had this very rectangle, and that its texels are still the same;
-    /// its shadow bounds are then kept. True after a frame in which the view was not given.
+    /// False promises that the View's previous frame had this very rectangle, and that its texels are still the same.
+    /// Its shadow bounds are then kept. Set it true after a frame in which this shadow view was not given.
     bool changed = true;
 };
 

@@ -60,7 +60,7 @@ enum class ListReservation : std::uint8_t {
 /// Plain values with working defaults; equal values have equal pipelines.
 struct ShadowSettings {
     /// Filters that the frame's lights may have. Pipelines hold the code of these alone, and are fastest with a single
-    /// one. Empty: no shadow is evaluated and everything is lit, which is what the lists cost by themselves.
+    /// one. Empty: no shadow is evaluated and everything is lit. So it shows what the lists cost by themselves.
     FilterSet filters = only(Filter::Pcss);
     std::uint32_t pcfRadius = 1;  ///< texels, 1 to 3
     /// Light::pcssPreset chooses among the first pcssPresetCount of them.
@@ -72,14 +72,14 @@ struct ShadowSettings {
     /// ShadowView::changed is false; set that true once after a recorded frame that was never submitted.
     bool shadowBounds = false;
     DepthBias depthBias = DepthBias::Oriented;
-    /// A pixel whose face looks away from a light is dark, and its shadowmaps are not asked; subsurface pixels are
-    /// never. Off, with DepthBias::Unbiased: face normals are not read at all.
+    /// A pixel whose face looks away from a light is dark, and the light's shadowmaps are not asked. This does not hold
+    /// for subsurface pixels. Where it is off, with DepthBias::Unbiased, face normals are not read at all.
     bool facedAwayIsDark = true;
     /// Phase 3 drops lights that every pixel of a tile looks away from, with facedAwayIsDark.
     bool dropLightsFacedAway = true;
-    /// Subsurface pixels move toward the light by this many metres, if it is more than the light's own bias. Where
-    /// subsurface casters are drawn without the faces that look at the light, 0 is right; where those are drawn too,
-    /// the thickness through which light shall pass. Source: the paper, section 4.2.
+    /// Subsurface pixels move toward the light by this many metres, if it is more than the light's own bias. 0 is right
+    /// where subsurface casters are drawn without the faces that look at the light. Where these faces are drawn too, it
+    /// is the thickness through which light shall pass. Source: the paper, section 4.2.
     float subsurfaceBiasMetres = 0.02f;
     /// Bits of a pixel's visibility in a slot: 8, or 4 for half the memory and an error of up to 0.066.
     std::uint32_t visibilityBits = 8;

@@ -50,7 +50,7 @@ struct TimelineRow {
 
 struct TimelineDesc {
     std::uint32_t framesInFlight = 2;  ///< 1 to 4
-    std::uint32_t maxRows = 64;        ///< 1 to 1024 of a frame; rows beyond are not recorded, and counted
+    std::uint32_t maxRows = 64;        ///< 1 to 1024 of a frame; rows beyond are counted, not recorded
 };
 
 /// Not thread safe. Needs queues with timestamps in all families of the context: else it records nothing.

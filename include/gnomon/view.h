@@ -38,14 +38,15 @@ namespace gnomon {
 struct ViewDesc {
     std::uint32_t maxWidthPx = 3840, maxHeightPx = 2160;
     std::uint32_t framesInFlight = 2;  ///< 1 to 4: frames the host records before the oldest has finished
-    /// Pools. 0: 8 per shadow tile on average. Capped by the device's largest storage buffer; capacities() tells.
+    /// Pools. 0: 8 per shadow tile on average. Capped by the device's largest storage buffer: see MemoryReport.
     std::uint32_t listEntries = 0;
     std::uint32_t visibilitySlots = 0;
-    /// 8 or 4: the bits of a slot that visibilitySlots counts. Frames of other ShadowSettings::visibilityBits have half
-    /// or twice as many slots in the same memory.
+    /// 8 or 4: the bits of the slots that visibilitySlots counts. A frame with other ShadowSettings::visibilityBits has
+    /// half or twice as many slots in the same memory.
     std::uint32_t visibilityBits = 8;
-    /// Above 0: beginFrame() makes a pool larger, up to this, when a frame that has finished would have needed more:
-    /// what FrameStatistics recommends. It then allocates, and frees the old buffer when its frames have finished.
+    /// Above 0: a pool may grow up to this. If a frame that has finished would have needed more, beginFrame() makes the
+    /// pool as large as FrameStatistics recommends. It then allocates, and frees the old buffer when its frames have
+    /// finished.
     std::uint32_t mostListEntries = 0;
     std::uint32_t mostVisibilitySlots = 0;
     std::uint32_t maxShadowViews = 4096;
@@ -102,8 +103,8 @@ struct FrameDesc {
     std::span<const LightShadowViews> lightViews;
     std::span<const ShadowView> shadowViews;
     HostImage depth;  ///< D32, D24 or D16 aspect view, 2D
-    /// Between neighbouring values of the depth image: 0 for D32, 6e-8 for D24, 1.6e-5 for D16. The bias grows by what
-    /// that, and the rounding of floats, may make of a position.
+    /// Between neighbouring values of the depth image: 0 for D32, 6e-8 for D24, 1.6e-5 for D16. This step and the
+    /// rounding of floats may have moved a position off its face. The bias grows by how far.
     float depthStep = 0.0f;
     /// Optional: R16G16_UINT, octahedral, the side the camera sees (src/shading/octahedral.glsl).
     HostImage faceNormals;
@@ -165,18 +166,18 @@ public:
     Result beginFrame(const FrameDesc& frame, PrepareReport* report = nullptr) noexcept;
 
     // Each records one pass with its barriers, debug label and timeline row, and leaves its own compute pipeline and
-    // descriptor sets bound. Before and after, the library's buffers need no barrier by the host as long as
-    // everything runs on one queue. Across queues a semaphore is enough; since the
-    // lists exist once per view, the next frame's recordHierarchicalDepth() must wait for this frame's
-    // recordEndFrame().
+    // descriptor sets bound. On one queue the library's buffers need no barrier by the host, before or after. Across
+    // queues a semaphore is enough. The lists exist once per view: the next frame's recordHierarchicalDepth() must wait
+    // for this frame's recordEndFrame().
     void recordHierarchicalDepth(VkCommandBuffer commands) noexcept;
     void recordFindLightsApproximate(VkCommandBuffer commands) noexcept;
     /// Afterwards the early lists are visible to all shaders. A host that evaluates every shadow while lighting may
     /// leave out phase 4.
     void recordFindLightsAccurate(VkCommandBuffer commands) noexcept;
-    /// Optional, with ShadowSettings::shadowBounds: least and greatest depths of blocks of the atlases, of the views
-    /// that changed. Filter::Pcss, in phase 4 as in the host's own shaders, then leaves out searches whose result they
-    /// tell; not a bit of the result changes. After the shadowmaps are drawn; afterwards visible to all shaders.
+    /// Optional, with ShadowSettings::shadowBounds: least and greatest depths of blocks of the atlases, made anew for
+    /// the shadow views that changed. Filter::Pcss then leaves out searches whose result they tell, in phase 4 as in
+    /// the host's own shaders. Not a bit of the result changes. To be recorded after the shadowmaps are drawn;
+    /// afterwards visible to all shaders.
     void recordShadowBounds(VkCommandBuffer commands) noexcept;
     /// Afterwards the final lists, the visibility and the indirect command are visible to all shaders and to indirect
     /// dispatch.
@@ -184,7 +185,7 @@ public:
     void recordEndFrame(VkCommandBuffer commands) noexcept;
 
     /// Sets for the host's lighting, of the frame last begun. The main lighting pipeline needs listsSet() alone; the
-    /// second one, for the tiles in evaluateTiles(), all three.
+    /// second one, for the tiles in evaluateTilesBuffer(), all three.
     [[nodiscard]] VkDescriptorSet listsSet() const noexcept;
     [[nodiscard]] VkDescriptorSet receiversSet() const noexcept;
     [[nodiscard]] VkDescriptorSet shadowmapsSet() const noexcept;

@@ -38,8 +38,8 @@ void main() {
     triangleId = triangle + item.triangleIdOffset;
 
     positionWs = transformPoint(item, pullPosition(vertex));
-    // In two steps: what rounding does to the place in the view, far from the origin, it does to clip z and w alike. In one
-    // step it would do so to each, and with standard Z their quotient turns 0.1 mm of the view into centimetres.
+    // In two steps. Far from the origin, rounding moves the place in the view, and clip z and w then move alike. In one
+    // step each would be rounded by itself. With standard Z their quotient turns 0.1 mm of the view into centimetres.
     const vec4 p = vec4(positionWs, 1.0);
     gl_Position =
         clipFromView *

@@ -1,14 +1,14 @@
 #pragma once
 // A scene on the device.
 //
-// Geometry is pulled by the vertex shaders from storage buffers: positions as tight floats, packed attributes, u32
-// indices that count from the scene's first vertex. A *draw item* is one primitive of one instance. Triangles are drawn
-// in clusters, sorted by place; triangle ids count through all draw items, and triangle() leads back to the scene.
+// - Vertex shaders pull geometry from storage buffers: positions as tight floats, packed attributes, u32 indices that
+//   count from the scene's first vertex.
+// - A *draw item* is one primitive of one instance. Triangles are drawn in clusters, sorted by place.
+// - Triangle ids count through all draw items, and triangle() leads back to the scene.
+// - What deforms has vertices of its own, which are uploaded whenever a pose changes them, and one bound for all of it.
 //
-// Large worlds: object positions far from their own origin are stored relative to the primitive's centre, and the
-// matrices are computed in double relative to the frame's origin, so nothing large is ever subtracted in a shader.
-//
-// What deforms has vertices of its own, which are uploaded whenever a pose changes them, and one bound for all of it.
+// Large worlds: object positions far from their own origin are stored relative to the primitive's centre. The matrices
+// are computed in double, relative to the frame's origin. So nothing large is ever subtracted in a shader.
 
 #include <cstdint>
 #include <functional>
@@ -82,8 +82,8 @@ public:
     [[nodiscard]] const glm::dvec3& origin() const { return origin_; }
     /// Grows whenever a shadow may have changed.
     [[nodiscard]] std::uint64_t castersRevision() const { return castersRevision_; }
-    /// True where something moved or deformed within the volume, left it or came into it, after that revision. Changes
-    /// of long ago are forgotten, and then it is true as well.
+    /// True where something moved or deformed within the volume, left it or came into it, after that revision. It is
+    /// also true for revisions of so long ago that changes since then are forgotten.
     [[nodiscard]] bool changedSince(std::uint64_t revision, const CullVolume& volume) const;
 
     /// Appends what may be visible, in item order (by material), neighbouring clusters merged.
@@ -99,8 +99,8 @@ public:
     [[nodiscard]] const std::vector<MaterialTraits>& materials() const { return traits_; }
     [[nodiscard]] std::uint32_t triangleCount() const { return triangleCount_; }  ///< of all instances
     [[nodiscard]] TriangleSource triangle(std::uint32_t triangleId) const;
-    /// Position among all instances' triangles in the scene's own order (instances, their primitives, their triangles),
-    /// which the G-buffer's id is not, because clusters are sorted. kNone for an id of the background.
+    /// Position among all instances' triangles in the scene's own order: instances, their primitives, their triangles.
+    /// The G-buffer's id is another, because clusters are sorted. kNone for an id of the background.
     [[nodiscard]] std::uint32_t trianglePosition(std::uint32_t triangleId) const;
     [[nodiscard]] std::vector<MemoryRow> memoryRows() const;
 

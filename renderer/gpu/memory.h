@@ -1,7 +1,9 @@
 #pragma once
-// A small sub-allocator: devices allow as few as 4096 allocations, a scene has more resources than that.
-// Blocks of 64 MiB per memory type and kind (buffers and images apart, so bufferImageGranularity never matters),
-// first fit in a sorted list of free ranges; what is larger than half a block gets an allocation of its own.
+// A small sub-allocator: devices allow as few as 4096 allocations, and a scene has more resources than that.
+//
+// Blocks have 64 MiB, per memory type and kind. Buffers and images are apart, so bufferImageGranularity never matters.
+// Free ranges stand in a sorted list, and the first that fits is taken. What is larger than half a block gets an
+// allocation of its own.
 
 #include <cstdint>
 #include <memory>

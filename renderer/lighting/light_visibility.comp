@@ -1,6 +1,6 @@
 #version 460
-// The visibility of one light as the lighting passes read it after phase 4, for comparison with the truth: from the final
-// lists and slots, evaluated where an entry says so. One work group per shadow tile.
+// The visibility of one light as the lighting passes read it after phase 4, for comparison with the truth. It comes
+// from the final lists and slots, and is evaluated where an entry says so. One work group per shadow tile.
 #extension GL_GOOGLE_include_directive : require
 #include "shading/evaluate_lights.glsl"
 

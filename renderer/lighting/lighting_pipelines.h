@@ -1,5 +1,5 @@
 #pragma once
-// The lighting pipelines and their layouts, apart from the images they work on: so they can also be made, and looked
+// The lighting pipelines and their layouts, apart from the images they work on. So they can also be made, and looked
 // at, on a device that can only compile.
 
 #include <map>
@@ -56,8 +56,8 @@ private:
     std::map<Key, Pipeline> pipelines_;
 };
 
-/// What pipelines that include the library's shaders are made with: 0, where a device has one subgroup size and need
-/// not, and perhaps cannot, be asked for it.
+/// The subgroup size that pipelines with the library's shaders ask for. 0: they do not ask. Then the device has one
+/// size only, and perhaps cannot be asked for it.
 std::uint32_t requiredSubgroupSize(const Device& device, const Context& context);
 
 }  // namespace gnomon::renderer

@@ -1,9 +1,11 @@
 #pragma once
 // Cascades of a directional light: orthographic shadow views around slices of the camera's view.
 //
-// Stable: a cascade's size depends on the slice's distances and the camera's lens alone (it surrounds the slice's
-// bounding sphere), and its place moves in steps of whole texels, so that no edge crawls while the camera moves or
-// turns. The steps are kCascadeStepPx texels wide, so that a slow camera leaves most cascades as they were drawn.
+// Stable: no edge crawls while the camera moves or turns.
+// - A cascade surrounds its slice's bounding sphere. So its size depends on the slice's distances and the camera's lens
+//   alone.
+// - Its place moves in steps of whole texels. The steps are kCascadeStepPx texels wide, so that a slow camera leaves
+//   most cascades as they were drawn.
 // Source: Valient 2008, "Stable Rendering of Cascaded Shadow Maps", ShaderX6; Zhang et al. 2006, "Parallel-Split Shadow
 // Maps" (distances between logarithmic and even).
 

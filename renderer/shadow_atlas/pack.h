@@ -1,6 +1,6 @@
 #pragma once
 // Free space of an atlas as power-of-two squares along a Morton curve. A square of 2^k cells a side, aligned to its own
-// size, is one aligned run of 4^k cells on the curve: packing squares is packing aligned intervals, which loses
+// size, is one aligned run of 4^k cells on the curve. So packing squares is packing aligned intervals, which loses
 // nothing.
 
 #include <array>

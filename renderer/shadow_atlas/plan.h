@@ -1,10 +1,11 @@
 #pragma once
 // Which light gets which squares of the shadow atlas this frame: pure CPU, no Vulkan device needed.
 //
-// Every casting light wishes for a resolution by its size on screen. If the wishes exceed the atlas, the squares that
-// weigh most for their importance are halved first; nothing is dropped unless even the smallest squares do not fit.
-// Squares are powers of two along a Morton curve, so they pack without loss; a square whose size did not change keeps
-// its place, so that its contents can be kept from frame to frame.
+// - Every casting light wishes for a resolution by its size on screen.
+// - If the wishes exceed the atlas, squares are halved, first those that are largest for their importance. Nothing is
+//   dropped unless even the smallest squares do not fit.
+// - Squares are powers of two along a Morton curve, so they pack without loss.
+// - A square whose size did not change keeps its place, so that its contents can be kept from frame to frame.
 
 #include <cstdint>
 #include <glm/glm.hpp>

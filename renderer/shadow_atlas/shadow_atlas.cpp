@@ -115,8 +115,8 @@ void ShadowAtlasImage::prepare(const GpuScene& scene, std::span<const ShadowLigh
         const Key key = keyOf(light, view);
         const auto volume = [&] { return cullVolumeOf(glm::make_mat4(view.view.clipFromWorld), scene.origin()); };
         const auto old = drawn_.find(id);
-        // An old key may only stand if nothing else was drawn over its square; squares of one plan never overlap, and a
-        // square that was not in the last plan is not in drawn_.
+        // An old key may only stand if nothing else was drawn over its square. That holds here: squares of one plan
+        // never overlap, and a square that was not in the last plan is not in drawn_.
         const bool cached = old != drawn_.end() && old->second.key == key &&
                             (old->second.castersRevision == scene.castersRevision() ||
                              !scene.changedSince(old->second.castersRevision, volume()));

@@ -1,8 +1,9 @@
 #pragma once
-// The shadow atlas: one D32 image with layers, and the pass that draws those views whose content changed.
+// The shadow atlas: one D32 image with layers, and the pass that draws those shadow views whose content changed.
 //
-// By default everything is drawn without hardware bias, since the library's oriented bias does the rest, and,
-// subsurface casters apart, without culling of faces: cloth without thickness casts from both sides. Reversed Z.
+// By default everything is drawn in reversed Z and without hardware bias, since the library's oriented bias does the
+// rest. Faces are not culled, so cloth without thickness casts from both sides. Subsurface casters are the exception:
+// see ShadowDrawing::subsurfaceFronts.
 
 #include <cstdint>
 #include <unordered_map>
@@ -38,9 +39,10 @@ public:
     /// GpuError where the device cannot.
     void setDrawing(const ShadowDrawing& drawing);
     [[nodiscard]] const ShadowDrawing& drawing() const { return drawing_; }
-    /// Finds what changed: a view is drawn again if its light or its rectangle changed, or if something moved in its
-    /// volume; said in the plan's views as ShadowView::changed. `lights` is what the plan was made from. After
-    /// GpuScene::recordTransforms() with the plan's origin. The plan must stay where it is until record().
+    /// Finds what changed, and says it in the plan's views as ShadowView::changed. A shadow view is drawn again if its
+    /// light or its rectangle changed, or if something moved in its volume. `lights` is what the plan was made from. To
+    /// be called after GpuScene::recordTransforms() with the plan's origin. The plan must stay where it is until
+    /// record().
     void prepare(const GpuScene& scene, std::span<const ShadowLight> lights, ShadowPlan& plan);
     /// Draws what prepare() found, outside of rendering. Afterwards visible to sampled reads of compute and fragment
     /// shaders.

@@ -2,9 +2,9 @@
 // The bias lab, in parts: everything that is known to break shadowmaps, as stations on one floor. Lab space: x to the
 // right, y up, z towards the default camera, y = 0 on the lab's floor, metres.
 //
-// The lab stands at kOrigin, 5.8 km from the origin of the world, where a float's step is 0.5 mm. Meshes keep their
-// lab-space vertices and every instance has the same exact transform: plates of 1 mm are 1 mm thick to the micrometre,
-// and whoever computes in world-space floats goes wrong.
+// The lab stands at kOrigin, 5.8 km from the origin of the world. There a float's step is 0.5 mm. Meshes keep their
+// lab-space vertices, and every instance has the same exact transform. So plates of 1 mm are 1 mm thick to the
+// micrometre, and whoever computes in world-space floats goes wrong.
 
 #include "scene/builtin/shapes.h"
 

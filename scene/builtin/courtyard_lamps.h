@@ -1,7 +1,7 @@
 #pragma once
-// Lanterns and lamps without their lights. Every mesh has the light's place as its origin and leaves some centimetres
-// of air around it: the glowing part is a bulb or flame next to the light, since one that enclosed the light would
-// shadow everything.
+// Lanterns and lamps without their lights. Every mesh has the light's place as its origin, and leaves some centimetres
+// of air around it. The glowing part is a bulb or flame next to the light: one that enclosed the light would shadow
+// everything.
 
 #include "scene/builtin/courtyard.h"
 

@@ -1,17 +1,19 @@
 // Scattering lights over any scene, of any size.
 //
-// Place. A random point of a random upward-facing triangle (normal within 60 degrees of up; all triangles where there
-// is none), chosen by area; from there a random way up, 2 to 15 % of the scene's height but at most half of the free
-// way to whatever is above. Refused: outside the bounds, closer than 0.2 % of the bounds' radius to a triangle, or
-// inside a solid. After 64 refusals per light the scene is taken to be full.
+// Place. A random point of a random upward-facing triangle is chosen by area (normal within 60 degrees of up; all
+// triangles where there is none). From there the light goes a random way up: 2 to 15 % of the scene's height, but at
+// most half of the free way to whatever is above. Three kinds of places are refused: outside the bounds, closer than
+// 0.2 % of the bounds' radius to a triangle, and inside a solid. After 64 refusals per light the scene is taken to be
+// full.
 //
-// Range. The mean number of lights in range of a random surface point shall be 4.5 whatever the scene and the count, as
-// in a lit game level. Instead of a formula for an ideal floor the range is found by bisection over 512 random surface
-// points, spots counting by the share of the sphere they cover. Each light then varies it by up to a quarter.
+// Range. As in a lit game level, the mean number of lights in range of a random surface point shall be 4.5, whatever
+// the scene and the count. Instead of a formula for an ideal floor, the range is found by bisection over 512 random
+// surface points. Spots count by the share of the sphere they cover. Each light then varies the range by up to a
+// quarter.
 // With a TileDensity the range is found by bisection over tiles of the picture instead, every light's variation
-// included: then 64 lights and 1024 cost the same per tile.
+// included. Then 64 lights and 1024 cost the same per tile.
 //
-// Intensity. About 8 lux at a third of the range, times 0.6 to 1.6, so that a picture's exposure depends neither on the
+// Intensity. About 8 lux at a third of the range, times 0.6 to 1.6. So a picture's exposure depends neither on the
 // scene's unit nor on the count. Source radius: 0.8 to 4 % of the free way that was used, 2 to 10 cm in a room.
 
 #include "scene/builtin/builtin.h"

@@ -1,7 +1,7 @@
 #pragma once
-// How many shadowed lights reach a shadow tile of a picture, estimated on the CPU: a few hundred tiles, nine pixels
-// each, by ray casts. A light counts where phase 3 of the library would count it: at least one pixel lies in its range
-// and cone, and looks towards it or lets light through.
+// How many shadowed lights reach a shadow tile of a picture. It is estimated on the CPU by ray casts: a few hundred
+// tiles, nine pixels each. A light counts where phase 3 of the library would count it: at least one pixel lies in its
+// range and cone, and looks towards it or lets light through.
 
 #include "scene/builtin/builtin.h"
 #include "scene/builtin/triangle_grid.h"

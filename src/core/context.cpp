@@ -28,7 +28,7 @@ Result checkDesc(const ContextDesc& desc) {
     return {};
 }
 
-// Of the set of the lists all but the frame's uniform buffer; the shadow views and the shadow bounds; working buffers.
+// Lists (all but the frame's uniform buffer), shadow views and shadow bounds, working buffers.
 constexpr std::uint32_t kStorageBuffersNeeded = kListsBindingCount - 1 + 2 + kWorkingBindingCount;
 
 // The subgroup size that pipelines will ask for, checked against what the device can do.

@@ -72,7 +72,7 @@ void writeBuffers(View::State& state, std::uint32_t slot) {
     device.vk.UpdateDescriptorSets(device.device, count, writes, 0, nullptr);
 }
 
-// Points the image bindings at the frame's images. Every frame anew: a host that destroys an image view and makes
+// Points the image bindings at the frame's images, in every frame anew. A host that destroys an image view and makes
 // another may get the same handle back, so equal handles prove nothing.
 void writeImages(const DeviceContext& device, VkDescriptorSet set, std::uint32_t firstBinding,
                  std::span<const VkImageView> views) {

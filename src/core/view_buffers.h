@@ -68,8 +68,8 @@ struct ViewBuffers {
     DeviceBuffer perFrame[kMaxFramesInFlight][kViewBufferCount];  // of the other kinds
     std::uint32_t generation = 0;                                 // grows when a buffer is made
 
-    // Makes those whose size is another than that of `before`; the old ones are kept until release(lastFrame +
-    // framesInFlight). On failure the buffers are as they were. Throws std::bad_alloc.
+    // Makes those whose size is another than that of `before`. The old ones are kept until
+    // release(lastFrame + framesInFlight). On failure the buffers are as they were. Throws std::bad_alloc.
     Result make(const DeviceContext& context, const ViewDesc& desc, const ViewSizes& before, const ViewSizes& sizes,
                 std::uint64_t lastFrame);
     // Frees what no frame from `frame` - framesInFlight on can use.

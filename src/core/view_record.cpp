@@ -26,8 +26,8 @@ void recordPass(View::State& state, VkCommandBuffer commands, PassId id, std::ui
         .dispatch(passOf(id), state.pipelines[id], state.context->pipelineLayout, sets, {.x = x, .y = y});
 }
 
-// Images that are bound but never read still need the layout that their descriptor names. Every frame, since a host may
-// drop a recorded frame without submitting it.
+// Images that are bound but never read still need the layout that their descriptor names. This is recorded in every
+// frame, since a host may drop a recorded frame without submitting it.
 void preparePlaceholders(View::State& state, VkCommandBuffer commands) {
     VkImageMemoryBarrier2 barriers[2] = {};
     const VkImage images[2] = {state.noFaceNormals.image, state.noAtlas.image};

@@ -1,19 +1,23 @@
 #version 460
 // Phase 3, Find Lights Accurate: which lights reach at least one pixel of a shadow tile.
 //
-// Problem: the froxel tests and the sharing of one mask by 64 tiles leave lights that reach no pixel of the tile; each
-// would cost a full shadow evaluation in phase 4.
+// Problem: phase 2 leaves lights that reach no pixel of the tile, because froxel tests are coarse and 64 tiles share
+// one mask. Each such light would cost a full shadow evaluation in phase 4.
 // Source: the paper, section 2.3, listing 3, corrected (the packed word of entry e is e / 3).
 // Plain way: one lane per pixel, a vote and a list append per light.
-// Here: first the work group tests 64 lights at a time, one per lane, against the tile's own froxel, as phase 2 did:
-// most lights of the group's mask are its other tiles'. The few that are left are tested per pixel. Every lane collects
-// a word of 32 answers, a subgroup ORs them, and subgroups meet in shared memory once per word instead of once per
-// light. The list is written at the end by all lanes from the 32 words: ascending light index, so its order never
-// depends on the order of execution.
-// Memory safety: with the paper's reservation the space is the tile's approximate count. Lights that the tile's own
-// mask, zBins and froxel reject are skipped, the froxel tests are conservative against lightReaches(), and a tile that
-// still exceeded its space would be marked as one without list space, so that no light is lost; a counter records it
-// and must stay 0.
+// Here, in three steps:
+// - First the work group tests 64 lights at a time, one per lane, against the tile's own froxel, as phase 2 did. Most
+//   lights of the group's mask belong to its other tiles, and end here.
+// - The few that are left are tested per pixel. Every lane collects a word of 32 answers, and a subgroup ORs them. So
+//   subgroups meet in shared memory once per word instead of once per light.
+// - At the end all lanes write the list from the 32 words, by ascending light index. So its order never depends on the
+//   order of execution.
+// Memory safety: with the paper's reservation, the space of a tile is its approximate count. Three things keep within
+// it:
+// - Lights that the tile's own mask, zBins and froxel reject are skipped.
+// - The froxel tests are conservative against lightReaches().
+// - A tile that still exceeded its space would be marked as one without list space, so that no light is lost. A counter
+//   records it, and must stay 0.
 #extension GL_GOOGLE_include_directive : require
 #define GNOMON_LISTS_ACCESS
 #include "vulkan/work_group.glsl"

@@ -1,15 +1,16 @@
 #version 460
 // Phase 2, Find Lights Approximate: which lights may reach a pixel of a shadow tile, and where its lists will lie.
 //
-// Problem: with up to 1024 lights and 129,600 tiles at 4K, per-pixel tests of every pair are out of reach, and fixed
-// lists per tile waste memory on the many tiles that see few lights.
+// Problem: with up to 1024 lights and 129,600 tiles at 4K, per-pixel tests of every pair are out of reach. Fixed lists
+// per tile waste memory on the many tiles that see few lights.
 // Source: the paper, section 2.2, listings 1 and 2.
 // Plain way: one lane per tile, all lights, a fixed list per tile.
-// Here: one work group per tile group, one lane per shadow tile. Candidates come from the 32x32 light masks and the
-// zBins; each is tested against the tile's froxel; the group's mask is the OR over its 64 tiles. List space for the
-// whole group is reserved with one atomic, from light counts rounded up to whole early-list words (listing 1 sums them
-// before rounding, which lets neighbours overlap).
-// Uniformity: the walk goes over the OR of a subgroup's candidates, so subgroup operations are never in divergent flow,
+// Here: one work group per tile group, one lane per shadow tile.
+// - Candidates come from the 32x32 light masks and the zBins. Each is tested against the tile's froxel.
+// - The group's mask is the OR over its 64 tiles.
+// - List space for the whole group is reserved with one atomic, from light counts rounded up to whole early-list words.
+//   (Listing 1 sums them before rounding, which lets neighbours overlap.)
+// Uniformity: the walk goes over the OR of a subgroup's candidates. So subgroup operations are never in divergent flow,
 // and light data are loaded once per subgroup. Subgroups meet in shared memory, with two barriers in all.
 #extension GL_GOOGLE_include_directive : require
 #define GNOMON_LISTS_ACCESS

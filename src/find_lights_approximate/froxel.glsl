@@ -1,11 +1,11 @@
 // A froxel (a tile's screen rectangle between two depths) and its intersection tests with lights, in view space.
 //
-// Problem: discard, per tile and at the price of a few dozen instructions, most lights that reach none of its pixels,
-// and never one that does: phase 3 writes into the space that is reserved from these answers.
+// Problem: discard, per tile and at the price of a few dozen instructions, most lights that reach none of its pixels.
+// Never discard one that does: phase 3 writes into the space that is reserved from these answers.
 // Source: the paper, section 2.2 (three tests); Wronski 2017, "Cull that cone!".
-// Floats: every comparison gives way by `margin`, which bounds the rounding of both this test and the per-pixel test
-// (positions of up to frame.largestCoordinate metres). The per-pixel test compares cosines, whose rounding widens narrow cones
-// the most, so cones are taken a little wider here.
+// Floats: every comparison gives way by `margin`. It bounds the rounding of both this test and the per-pixel test, for
+// positions of up to frame.largestCoordinate metres. The per-pixel test compares cosines. Their rounding widens narrow
+// cones the most, so cones are taken a little wider here.
 #ifndef GNOMON_FIND_LIGHTS_APPROXIMATE_FROXEL_GLSL
 #define GNOMON_FIND_LIGHTS_APPROXIMATE_FROXEL_GLSL
 

@@ -1,13 +1,14 @@
 #version 460
 // Phase 4, Generate Deferred Shadows: the visibility of every light of the early list from every pixel of a tile.
 //
-// Problem: evaluating shadows inside the lighting shader keeps its registers and the filter's alive together.
+// Problem: a lighting shader that evaluates shadows keeps its own registers and the filter's alive together.
 // Source: the paper, section 2.4, listing 4. Wholly dark: nothing is written. Wholly lit: a flag. Else a slot.
 // Plain way: light after light, two votes, one slot allocation and a byte store each.
-// Here: four lights at a time (eight with slots of 4 bits). A lane's visibilities of them form one word; AND and OR of
-// those words over the tile are the votes; one atomic takes all slots of the batch; and since a batch's slots are 64
-// words, each lane gathers and stores exactly one. Two barriers per batch. Decisions are made on the quantised values.
-// Overflow: without a slot the entry says EVALUATE; without list space the tile has no entries. Such tiles go to the
+// Here: a batch of four lights at a time (eight with slots of 4 bits), with two barriers.
+// - A lane's visibilities of the batch form one word.
+// - AND and OR of those words over the tile are the votes. They are made on the quantised values.
+// - One atomic takes all slots of the batch. These slots are 64 words, so each lane gathers and stores exactly one.
+// Overflow: without a slot the entry says EVALUATE. Without list space the tile has no entries. Such tiles go to the
 // indirect list of the second lighting pipeline, and nothing is lost.
 #extension GL_GOOGLE_include_directive : require
 #define GNOMON_LISTS_ACCESS

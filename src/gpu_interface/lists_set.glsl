@@ -1,6 +1,6 @@
-// The set of the lists: all that lighting, EVALUATE and forward shaders read: frame constants, lights, and what phases 1
-// to 4 leave for them. A host defines GNOMON_LISTS_SET before the first include if set 0 is taken. The library's own
-// passes, which write, define GNOMON_LISTS_ACCESS as nothing.
+// The set of the lists. It is all that lighting, EVALUATE and forward shaders read: frame constants, lights, and what
+// phases 1 to 4 leave for them. A host defines GNOMON_LISTS_SET before the first include if set 0 is taken. The
+// library's own passes write to it; they define GNOMON_LISTS_ACCESS as nothing.
 #ifndef GNOMON_GPU_INTERFACE_LISTS_SET_GLSL
 #define GNOMON_GPU_INTERFACE_LISTS_SET_GLSL
 

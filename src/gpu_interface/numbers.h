@@ -127,8 +127,8 @@ GNOMON_CONSTANT GNOMON_UINT kReserveAccurate = 1u;     // by phase 3, from the e
 GNOMON_CONSTANT GNOMON_UINT kReserveFixed = 2u;        // debugging: a fixed number of entries per tile
 
 // --- Per-tile count words --------------------------------------------------------------------------------------------
-// Early count: number of lights in the low bits, and above how many of them cast shadows; true also of a tile without
-// list space.
+// Early count: the number of lights in the low bits, and above them how many of these cast shadows. Tiles without list
+// space have both numbers, too.
 GNOMON_CONSTANT GNOMON_UINT kEarlyCountMask = 0x7FFu;
 GNOMON_CONSTANT GNOMON_UINT kEarlyCastingShift = 16u;
 // Final count: number of entries, and this bit where the tile must be shaded with evaluation.

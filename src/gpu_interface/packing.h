@@ -34,8 +34,8 @@ GNOMON_FN uint packFinalEntry(uint lightIndex, uint slotOrFlag) { return lightIn
 GNOMON_FN uint finalLightIndex(uint entry) { return entry & (kMaxLightsPerView - 1u); }
 GNOMON_FN uint finalSlotOrFlag(uint entry) { return entry >> kLightIndexBits; }
 
-// Entry of a block of the shadow bounds. Levels lie behind each other, each a quarter of the one before: the finest has
-// `blocks` blocks, so level l begins at blocks (1 + 1/4 + ...) = 4 (blocks - blocks / 4^l) / 3.
+// Where a level of the shadow bounds begins. Levels lie behind each other, each a quarter of the one before, and the
+// finest has `blocks` blocks. So level l begins at blocks (1 + 1/4 + ...) = 4 (blocks - blocks / 4^l) / 3.
 GNOMON_FN uint shadowBoundsLevelOffset(uint blocks, uint level) {
     return (blocks - (blocks >> (2u * level))) / 3u * 4u;
 }

@@ -1,5 +1,6 @@
-// The set of the shadowmaps: the table of shadow views and the host's atlases. Only pipelines that evaluate shadows
-// have it; the main lighting pipeline does not (paper, section 2: that is where its registers are saved).
+// The set of the shadowmaps: the table of shadow views, the host's atlases, and their bounds. Only pipelines that
+// evaluate shadows have it. The main lighting pipeline does not: that is where its registers are saved (paper, section
+// 2).
 #ifndef GNOMON_GPU_INTERFACE_SHADOWMAPS_SET_GLSL
 #define GNOMON_GPU_INTERFACE_SHADOWMAPS_SET_GLSL
 

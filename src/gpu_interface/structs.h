@@ -46,8 +46,8 @@ struct GpuLight {
     uint shadowView;     // first shadow view (points: of six, +X -X +Y -Y +Z -Z; cascades: nearest), or kNoShadowView
     uint hostIndex;      // index into the light array that the host gave
     float lightFade;     // above 0 to 1, multiplies the light
-    // Visibility = 1 - fade * (1 - visibility); fade = shadowFade, 0..1; directional lights: shadowFade +
-    // shadowFadePerMetre * distance between pixel and eye, cut to 0..1.
+    // The shadow's fade: visibility becomes 1 - fade * (1 - visibility). fade is shadowFade, 0..1. For directional
+    // lights it is shadowFade + shadowFadePerMetre * distance between pixel and eye, cut to 0..1.
     float shadowFade;
     float biasMetres;  // depth bias of this light
     float shadowFadePerMetre;
@@ -70,10 +70,13 @@ struct GpuShadowView {
     uint boundsRow;      // blocks of the finest level in a row,
     uint boundsBlocks;   // and in all; 0: the view has no bounds
     uint reserved;
-    // A plane with unit normal n, in the view: with m = (n planeX, n planeY, n planeZ), the normal's part along the ray
-    // through ndc, per metre of linear depth, is m.x ndc.x + m.y ndc.y + m.z = k (orthographic: m.z), and the slope of
-    // its device depth per texel m.xy * planeSlopePerPx / (k * linear depth, orthographic: k).
-    // Side by side with what is read together: a load of its own for the slopes cost PCF 2 % on an NVIDIA H200.
+    // What gives the slope of a plane's depth. Take a plane with unit normal n, and m = (n planeX, n planeY, n planeZ).
+    // The normal's part along the ray through ndc, per metre of linear depth, is
+    //     k = m.x ndc.x + m.y ndc.y + m.z    (orthographic: k = m.z).
+    // The slope of the plane's device depth per texel is
+    //     m.xy * planeSlopePerPx / (k * linear depth)    (orthographic: divided by k alone).
+    // These members lie beside what is read together with them: a load of its own for the slopes cost PCF 2 % on an
+    // NVIDIA H200.
     vec3 planeX;
     float planeSlopePerPxX;
     vec3 planeY;

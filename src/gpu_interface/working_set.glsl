@@ -1,4 +1,5 @@
-// The set of the working buffers: what the library's passes keep among themselves. Hosts use its number for their own set.
+// The set of the working buffers: what the library's passes keep among themselves. Hosts use its number for a set of
+// their own.
 #ifndef GNOMON_GPU_INTERFACE_WORKING_SET_GLSL
 #define GNOMON_GPU_INTERFACE_WORKING_SET_GLSL
 

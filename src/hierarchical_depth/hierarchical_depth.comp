@@ -1,12 +1,13 @@
 #version 460
 // Hierarchical depth: least and greatest view depth of every 8x8 shadow tile.
 //
-// Source: the paper, section 2.2 and its footnote 1: the greatest depth leaves out background, which would otherwise
-// make every tile at a silhouette reach to the end of the world. A tile of background alone gets min = +inf,
-// max = -inf, and no lights. One work group per tile, one lane per pixel.
-//
-// With a host's own pyramid (kHostDepthPyramid) one lane converts one tile. Such a pyramid may include background; the
-// range is then merely longer: endless, since dividing by a standard infinite projection's zero could give either sign.
+// Source: the paper, section 2.2 and its footnote 1. The greatest depth leaves out background, which would otherwise
+// make every tile at a silhouette reach to the end of the world. A tile of background alone gets min = +inf, max =
+// -inf, and no lights.
+// One work group per tile, one lane per pixel. With a host's own pyramid (kHostDepthPyramid) one lane converts one
+// tile.
+// Limits: a host's pyramid may include background. The range of such a tile is then taken as endless: a standard
+// infinite projection's zero could make its end of either sign.
 #extension GL_GOOGLE_include_directive : require
 #define GNOMON_LISTS_ACCESS
 #include "vulkan/work_group.glsl"

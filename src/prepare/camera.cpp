@@ -1,17 +1,18 @@
 // Camera: from the host's viewFromWorld and clipFromView to eye, axes, near, far, and the two mappings that shaders use
 // (pixel -> view xy, device depth -> view depth).
 //
-// Plain way: ask the host for all of these. What we do: the depth buffer was drawn with exactly one matrix, so that
-// matrix is the one truth, and everything else is read out of it. A projection without shear has six numbers:
+// Plain way: ask the host for all of these.
+// What we do: the depth buffer was drawn with exactly one matrix. So that matrix is the one truth, and everything else
+// is read out of it. A projection without shear has six numbers:
 //
 //     clip.x = m00 x + m02 z (+ m03 if orthographic)     clip.z = m22 z + m23
 //     clip.y = m11 y + m12 z (+ m13 if orthographic)     clip.w = +-z (perspective) or 1 (orthographic)
 //
-// The sign of clip.w says whether the view looks down +z or -z; an orthographic matrix tells it by whether device depth
-// grows or falls along z, compared with what the host says of its depth. Near and far are where device depth takes its
-// end values.
+// Whether the view looks down +z or -z: for perspective the sign of clip.w says it. For an orthographic matrix it
+// follows from whether device depth grows or falls along z, and from what the host says of its depth.
+// Near and far are where device depth takes its end values.
 //
-// Limits: oblique near planes, sheared and rotated projections are refused: they are no product of a pixel's x and y.
+// Limits: oblique near planes, sheared and rotated projections are refused. They are no product of a pixel's x and y.
 
 #include "prepare/camera.h"
 

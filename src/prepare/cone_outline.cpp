@@ -1,26 +1,28 @@
 // Screen bounds of a spot's volume, the spherical sector with apex p, axis d, half-angle a and radius r.
 //
-// Problem: the ball around a spot is a poor bound: a narrow cone fills a few per cent of it.
+// Problem: the ball around a spot is a poor bound. A narrow cone fills a few per cent of it.
 // Plain way: clip or rasterise a mesh of the cone. Costly, and never exact.
-// What we do: the part of the sector in front of the near plane is convex, so its image is too, and any line that
-// touches the image bounds it. We take up to ten such lines and let screen_bounds.cpp intersect them with the ball's
+// What we do: the part of the sector in front of the near plane is convex, so its image is convex too. Any line that
+// touches the image bounds it. We take up to ten such lines, and screen_bounds.cpp intersects them with the ball's
 // rows:
 //
-// 1. The two silhouettes of the infinite cone, planes through eye and apex that touch the cone. With a unit normal n
-//    they are n.p = 0 and n.d = -sin a (the angle between n and d is 90 degrees + a). They exist iff the eye is outside
-//    the double cone, and hold whatever the near plane cuts off. For a parallel view n.z = 0 replaces n.p = 0.
+// 1. The two silhouettes of the infinite cone. They are planes through eye and apex that touch the cone. With a unit
+//    normal n they are n.p = 0 and n.d = -sin a (the angle between n and d is 90 degrees + a). They exist iff the eye
+//    is outside the double cone. They hold whatever the near plane cuts off. For a parallel view n.z = 0 replaces n.p =
+//    0.
 // 2. Tangents in four directions and their opposites: (1,0), (0,1), (1,1), (1,-1). The view is turned about its axis so
-//    that the direction is u; then the largest x/z is wanted. While the sector lies in front of the near plane it is at
-//    the apex, or where the ball's tangent plane through the eye touches the cap, or where one touches the rim; the
-//    rim's tangents n = (1,0,-t) through the eye solve (n.c)^2 = R^2 (|n|^2 - (n.d)^2), a quadratic in t.
+//    that the direction is u. Then the largest x/z is wanted. While the sector lies in front of the near plane, it is
+//    at one of three places: at the apex; where the ball's tangent plane through the eye touches the cap; where one
+//    touches the rim. The rim's tangents n = (1,0,-t) through the eye solve (n.c)^2 = R^2 (|n|^2 - (n.d)^2), a
+//    quadratic in t.
 // 3. Where the near plane cuts the sector there is no short formula. But every plane that holds the sector on one side
 //    gives a bound: from x + m z <= h(1,0,m) for all points follows x/z <= max(h/near, h/far) - m. The least over m is
-//    the exact bound (it is the dual problem), and the function is quasi-convex in the plane's angle, so a
-//    golden-section search finds it; stopping early costs tightness, never correctness. It is done for u and v only.
+//    the exact bound (it is the dual problem). The function is quasi-convex in the plane's angle, so a golden-section
+//    search finds its least. Stopping early costs tightness, never correctness. This is done for u and v only.
 //
 // A parallel view needs the support function alone. Where the eye is inside the volume nothing is bounded.
-// Limits: ten lines and the ball leave corners beside a round cap: 3 to 5 % more tiles than are reached (measured in
-// conservative_test.cpp at 1920x1080).
+// Limits: ten lines and the ball leave corners beside a round cap. That makes 3 to 5 % more tiles than are reached
+// (measured in conservative_test.cpp at 1920x1080).
 
 #include "prepare/cone_outline.h"
 

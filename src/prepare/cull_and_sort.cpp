@@ -1,15 +1,17 @@
 // Cull and sort. Source: the paper, section 2.1.1 (lights sorted by their closest distance to the near plane).
 //
-// Problem: out of all lights of the scene find those that can reach a visible surface, at most 1024, in an order that
-// makes zBins tight.
+// Problem: out of all lights of the scene, find those that can reach a visible surface. At most 1024 of them, and in an
+// order that makes zBins tight.
 // Plain way: test, sort by depth, cut off at 1024.
-// What we do: as that, but the cut is by importance, not by depth: priority * intensity * the share of the view sphere
-// that the range subtends; a light kept last frame counts a little more, so that the choice does not flicker.
-// Directional lights go first, whatever their importance: each of them lights the whole view. Sort keys are 64-bit
-// integers that end with the host's index, so equal depths (rounded to float) have one order on every machine.
+// What we do: the same, but the cut is by importance, not by depth.
+// - Importance is priority * intensity * the share of the view sphere that the range subtends. A light kept last frame
+//   counts a little more, so that the choice does not flicker.
+// - Directional lights go first, whatever their importance: each of them lights the whole view.
+// - Sort keys are 64-bit integers that end with the host's index. So equal depths (rounded to float) have one order on
+//   every machine.
 //
-// Limits: importance knows nothing of occlusion. Hysteresis goes by host index: a host that renumbers its lights loses
-// it.
+// Limits: importance knows nothing of occlusion. Hysteresis goes by host index, so a host that renumbers its lights
+// loses it.
 
 #include "prepare/cull_and_sort.h"
 

@@ -1,21 +1,21 @@
 // Light volumes: balls and spherical sectors against half-spaces.
 //
 // Problem: frustum culling, depth bins and screen bounds each ask how far a light reaches in some direction.
-// Plain way: bounding spheres or boxes for everything; a narrow spot then reaches far too wide.
-// What we do: one exact function answers all. The *support function* h(n) = max of dot(n, x) over a convex volume. For
-// a ball it is n.c + r |n|. For a spherical sector (apex p, axis d, half-angle a <= 90 degrees, radius r) let t be the
-// angle between n and d; the farthest point is
+// Plain way: bounding spheres or boxes for everything. A narrow spot then reaches far too wide.
+// What we do: one exact function answers all. The *support function* of a convex volume is h(n) = max of dot(n, x) over
+// it. For a ball it is n.c + r |n|. For a spherical sector (apex p, axis d, half-angle a <= 90 degrees, radius r) let t
+// be the angle between n and d. The farthest point is
 //     the ball's own, p + r n,             if t <= a          (it lies on the cap),
 //     on the rim, r cos(t - a) away,       if a < t < a + 90  (the rim's nearest point to n),
 //     the apex itself,                     beyond.
 // cos(t - a) = cos t cos a + sin t sin a: no angle is ever computed. The volume misses a half-space iff h is below its
-// offset, so a plane test is exact, and a depth range is two evaluations.
+// offset. So a plane test is exact, and a depth range is two evaluations.
 //
-// Margins. The GPU tests pixels in float: positions carry errors of a few 2^-24 of the largest coordinate in play, and
-// a cone's cosine cannot tell angles nearer than 2^-24 / sin a. Each volume is widened by several times that; at 16 km
+// Margins: the GPU tests pixels in float. Positions carry errors of a few 2^-24 of the largest coordinate in play. A
+// cone's cosine cannot tell angles nearer than 2^-24 / sin a. Each volume is widened by several times that. At 16 km
 // from the origin it is 16 mm.
-// Limits: testing planes one by one keeps a volume that misses the frustum only past an edge or a corner; the tile
-// masks then find it nowhere.
+// Limits: planes are tested one by one. That keeps a volume which misses the frustum only past an edge or a corner. The
+// tile masks then find it nowhere.
 
 #include "prepare/light_volume.h"
 

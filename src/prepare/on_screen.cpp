@@ -22,8 +22,8 @@ Sphere reachOf(const VisibleLight& light, const ViewCamera& camera) {
     return {apex + axis * radius, radius};
 }
 
-// Pixels across of a sphere. From within it fills the view; the nearest point of interest is taken no nearer than half
-// a radius.
+// Pixels across of a sphere. From within, a sphere fills the view: the eye is taken to be no nearer to the centre than
+// half a radius.
 float diameterPx(const Sphere& sphere, const ViewCamera& camera, double pxPerUnit) {
     const double metres = 2.0 * sphere.radius;
     if (camera.orthographic) return static_cast<float>(metres * pxPerUnit);

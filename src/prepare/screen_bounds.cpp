@@ -2,27 +2,28 @@
 //
 // Problem: find the 32x32-pixel tiles that a light's volume may touch: never one too few, and few too many.
 // Source: exact bounds of a ball under perspective are known from Mara and McGuire, "2D Polyhedral Bounds of a Clipped,
-// Perspective-Projected 3D Sphere" (2013); the derivation below is our own and goes row by row.
-// Plain way: project a bounding box: loose, and wrong where a corner is behind the eye.
+// Perspective-Projected 3D Sphere" (2013). The derivation below is our own, and goes row by row.
+// Plain way: project a bounding box. That is loose, and wrong where a corner is behind the eye.
 //
-// What we do. A ball cut off at the near plane is convex and in front of the eye, so its image is convex. Therefore the
-// largest u within a row is at the row's upper boundary, at its lower boundary, or at the image's rightmost point if
-// that lies in the row. The boundary v = const is a plane through the eye. It cuts the ball in a disc, and the extent
-// of x/z on a disc has a closed form (2D, centre (x, s), radius p, s measured along the boundary plane, L = sqrt(x^2 +
-// s^2 - p^2)):
+// What we do: a ball cut off at the near plane is convex and in front of the eye, so its image is convex. Therefore the
+// largest u within a row is at one of three places: at the row's upper boundary, at its lower boundary, or at the
+// image's rightmost point if that lies in the row. The boundary v = const is a plane through the eye. It cuts the ball
+// in a disc, and the extent of x/z on a disc has a closed form. In 2D the disc has centre (x, s) and radius p, with s
+// measured along the boundary plane. With L = sqrt(x^2 + s^2 - p^2) the largest x/z is
 //
 //     tangent from the eye   (L x + p s) / (L s - p x)    if it touches at s >= near,
 //     else the corner        (x + sqrt(p^2 - (near - s)^2)) / near    where the near plane cuts the disc,
 //
 // and mirrored for the smallest. L is the same for every boundary: it is the length of the eye's tangent to the ball.
-// So a row costs one or two square roots, in a loop over boundaries without branches. (Vectorised, which GCC does only
-// under -fno-math-errno, the whole phase gains a mere 5 %: an AMD EPYC of family 26, GCC 12. So no flag is set.)
+// So a row costs one or two square roots, in a loop over boundaries without branches.
 // Spots are cut further by straight lines (cone_outline.cpp). A light that covers all four corners of the screen covers
 // all of it, by convexity, and writes no rows.
+// Vectorised, the whole phase gains a mere 5 % (an AMD EPYC of family 26, GCC 12). GCC does it only under
+// -fno-math-errno, so no flag is set.
 //
-// Parallel view: the image of a ball is a disc, smaller where near or far plane cut off the ball's larger half.
-// Rounding: the loop is float. The ball's radius grows by 2e-6 of its distance, ten float roundings, because next to
-// the uppermost and lowest point of the image p^2 is a small difference; bounds move outward by a fiftieth of a pixel.
+// Parallel view: the image of a ball is a disc. It is smaller where near or far plane cut off the ball's larger half.
+// Rounding: the loop is float. Next to the uppermost and lowest point of the image, p^2 is a small difference. So the
+// ball's radius grows by 2e-6 of its distance, ten float roundings, and bounds move outward by a fiftieth of a pixel.
 // Limits: the far plane of a perspective view is not used.
 
 #include "prepare/screen_bounds.h"

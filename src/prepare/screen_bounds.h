@@ -9,8 +9,8 @@
 
 namespace gnomon::prepare {
 
-/// The screen as rows and columns of tiles, in image-plane coordinates (u, v) that grow with pixel x and y: view xy at
-/// depth 1 (perspective) or view xy (orthographic), each negated where the projection mirrors.
+/// The screen as rows and columns of tiles, in image-plane coordinates (u, v) that grow with pixel x and y. They are
+/// view xy at depth 1 (perspective) or view xy (orthographic), each negated where the projection mirrors.
 struct ScreenGrid {
     void create(std::uint32_t maxRows);  ///< may throw std::bad_alloc
     void set(const ViewCamera& camera, std::uint32_t widthPx, std::uint32_t heightPx) noexcept;

@@ -3,11 +3,13 @@
 //
 // Problem: fill 8,160 entries of 33 words (at 3840x2160) from up to 1024 lights.
 // Plain way: set a bit in every tile that a light covers. A thousand lights that each cover the screen set eight
-// million bits, spread over a megabyte, and read it back: no use on write-combined memory.
-// What we do: a light covers one span of columns per row of tiles (screen_bounds.cpp), so a row of tiles is told by
-// where spans begin and end. Both flip the light's bit. Walking a row, an entry is the one to its left with those bits
-// flipped, and only words in which something flips are touched. Cost: two marks per span, and one copy of 132 bytes per
-// tile, streamed once in order. Lights that cover the whole screen are set once for all rows.
+// million bits, spread over a megabyte, and read them back. That is no use on write-combined memory.
+// What we do: a light covers one span of columns per row of tiles (screen_bounds.cpp). So a row of tiles is told by
+// where spans begin and end.
+// - Both ends flip the light's bit. Along a row, an entry is the one to its left with those bits flipped. Only words in
+//   which something flips are touched.
+// - The cost is two marks per span, and one copy of 132 bytes per tile, streamed once in order.
+// - Lights that cover the whole screen are set once for all rows.
 // Limits: the row's marks take 132 bytes per column (16 KB at 3840), which should stay in the nearest cache.
 
 #include "prepare/tile_light_masks.h"

@@ -1,6 +1,6 @@
 #pragma once
-// The little vector arithmetic that phase 1 needs, in double precision: it derives bounds that the GPU's float
-// arithmetic must never exceed, so its own rounding should not count.
+// The little vector arithmetic that phase 1 needs. It is in double precision, because phase 1 derives bounds that the
+// GPU's float arithmetic must never exceed. So its own rounding should not count.
 
 #include <cmath>
 

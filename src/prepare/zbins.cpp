@@ -2,18 +2,19 @@
 // for Tiled and Clustered Rendering" (2017); the ranged table is the paper's.
 //
 // Problem: reject lights by depth with two look-ups. Lights are sorted by nearest depth, so a slice of depth needs the
-// lowest and highest index only. For a range of slices the two end slices do not do: a light may lie wholly between
-// them. So a second, *ranged* table holds, per slice, the lowest index of this and all later slices, and the highest of
-// this and all earlier ones; rangedMin[first] and rangedMax[last] then hold every light that meets the range.
+// lowest and the highest index only. For a range of slices, the two end slices do not do: a light may lie wholly
+// between them. So there is a second, *ranged* table. Per slice it holds the lowest index of this and all later slices,
+// and the highest of this and all earlier ones. Then rangedMin[first] and rangedMax[last] enclose every light that
+// meets the range.
 //
-// Plain way: every light visits every bin of its depth range: 1024 x 1024 steps where all ranges are long.
-// What we do: a bin takes its minimum from the first light that reaches it and its maximum from the last one, so once
-// painted it is done. Lights paint in ascending order (minimum), then in descending order (maximum), and skip painted
-// bins by a chain of "next unpainted" links that is shortened as it is walked: about 1024 + 1024 steps each.
+// Plain way: every light visits every bin of its depth range. That is 1024 x 1024 steps where all ranges are long.
+// What we do: a bin takes its minimum from the first light that reaches it and its maximum from the last one. So once
+// painted it is done. Lights paint in ascending order (minimum), then in descending order (maximum). They skip painted
+// bins by a chain of "next unpainted" links that is shortened as it is walked. That is about 1024 + 1024 steps each.
 //
 // Rounding: the shader computes int(floor((depth - near) * binsPerMetre)), clamped, in float. Depth ranges come rounded
-// outward by 1e-5 of themselves, which covers depth's own error; the product and the rounded binsPerMetre add up to
-// 1024 * 3 * 2^-24 = 2e-4 of a bin, and every range is widened by 1e-3 of a bin.
+// outward by 1e-5 of themselves, which covers depth's own error. The product and the rounded binsPerMetre add up to
+// 1024 * 3 * 2^-24 = 2e-4 of a bin. Every range is widened by 1e-3 of a bin.
 //
 // Limits: bins are uniform, so one light that reaches very far makes all bins thick. Directional lights stand outside.
 

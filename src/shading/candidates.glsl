@@ -13,8 +13,8 @@ struct Candidates {
     uint last;
 };
 
-// An endless depth counts as the farthest reach of a light, so that no infinity meets a zero (bins of a frame without
-// lights are 0 per metre).
+// An endless depth counts as the farthest reach of a light. So infinity never meets a zero: a frame without lights has
+// 0 bins per metre.
 uint zBinOf(float viewDepth) {
     float depth = min(viewDepth, frame.farthestReach);
     return uint(clamp(floor((depth - frame.zBinNearDepth) * frame.zBinsPerMetre), 0.0, float(kZBinCount - 1u)));

@@ -1,6 +1,8 @@
-// For the host's forward shaders (hair, glass): a forward surface is not at the depth that the tile lists were built
-// for, so it finds its lights through the tile light masks and the zBin of its own depth, and samples the standard
-// shadowmaps with the same filters (visibility/visibility.glsl, with a Receiver that the shader fills itself).
+// For the host's forward shaders (hair, glass).
+//
+// A forward surface is not at the depth that the tile lists were built for. So it finds its lights through the tile
+// light masks and the zBin of its own depth. It samples the standard shadowmaps with the same filters:
+// visibility/visibility.glsl, with a Receiver that the shader fills itself.
 //
 //     ForwardWalk walk = beginForwardWalk(uvec2(gl_FragCoord.xy) - frame.viewportPx, viewDepth);
 //     uint lightIndex;

@@ -1,5 +1,5 @@
 // Positions of pixels. All of it is precise: the same pixel must have the same position, bit for bit, in every pipeline
-// that evaluates a shadow there, or a hard shadow's edge would differ between deferred and inline evaluation.
+// that evaluates a shadow there. Else a hard shadow's edge would differ between deferred and inline evaluation.
 #ifndef GNOMON_SHADING_FRAME_GLSL
 #define GNOMON_SHADING_FRAME_GLSL
 

@@ -1,13 +1,15 @@
 // Face normals from the host's depth, for hosts that store none.
 //
-// Problem: neighbours on another face or surface bend the normal, and a wrong normal is a wrong plane for all texels of
-// a shadow, or a face that seems to look away.
+// Problem: neighbours on another face or surface bend the normal. A wrong normal is a wrong plane for all texels of a
+// shadow, or a face that seems to look away.
 // Plain way: the cross product of the shorter one-sided differences of positions.
-// Here: device depth is affine in the pixel along any plane (see depth_bias.glsl). So of three pixels in a row on one
-// face, the second difference is nothing but rounding. Each axis has three such rows that hold the pixel: ahead, behind
-// and between. If none bends, all five pixels tell the slope, which evens the rounding out tenfold; else each row tells
-// it, weighted by how little it bends. Beside a silhouette the rows bend as curved surfaces do, and their slope is
-// continued to the pixel. The normal follows from the slopes without a difference of positions.
+// Here: device depth is affine in the pixel along any plane (see visibility/depth_bias.glsl). So of three pixels in a
+// row on one face, the second difference is nothing but rounding. Each axis has three such rows that hold the pixel:
+// ahead, behind and between.
+// - If none of them bends, all five pixels tell the slope, which evens the rounding out tenfold.
+// - Else each row tells it, weighted by how little it bends.
+// - Beside a silhouette the rows bend as curved surfaces do, and their slope is continued to the pixel.
+// The normal follows from the slopes without a difference of positions.
 // Limits: faces that are less than three pixels wide or high. Where no row is near to straight, as on a pole of one
 // pixel, the slope is taken for that of a face across the view.
 #ifndef GNOMON_SHADING_NORMAL_FROM_DEPTH_GLSL
@@ -45,8 +47,8 @@ float weightOf(float bend, float least) {
     return weight;
 }
 
-// Slope of the device depth per pixel along an axis at a pixel of depth d. `rounding` of d; `steep`: the slope of the
-// steepest face that a bent row may tell.
+// Slope of the device depth per pixel along an axis, at a pixel of depth d. `rounding`: what rounding may make of d.
+// `steep`: the slope of the steepest face that a bent row may tell.
 float depthSlope(ivec2 pixel, ivec2 axis, float d, float rounding, float steep) {
     float a1 = neighbourDepth(pixel + axis), a2 = neighbourDepth(pixel + 2 * axis);
     float b1 = neighbourDepth(pixel - axis), b2 = neighbourDepth(pixel - 2 * axis);

@@ -28,8 +28,8 @@ struct TileLights {
     bool evaluate;  // some entry says EVALUATE, or the tile has no list
 };
 
-// Where the work group is the tile, from gl_WorkGroupID: then a compiler knows that list and lights are the same for
-// all lanes, and keeps them in scalar registers (docs/register-pressure.md).
+// For shaders whose work group is the tile. Give gl_WorkGroupID: a compiler then knows that list and lights are the
+// same for all lanes, and keeps them in scalar registers (docs/register-pressure.md).
 TileLights tileLightsOf(uvec2 tileCoordinates) {
     uint tile = tileIndexOf(tileCoordinates);
     uint word = finalCounts[tile];

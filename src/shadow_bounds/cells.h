@@ -16,21 +16,21 @@ std::uint32_t shadowBoundsCellsFor(std::uint64_t texels) noexcept;
 // Bytes of the bounds of so many cells, all levels.
 std::uint64_t shadowBoundsBytes(std::uint32_t cells) noexcept;
 
-// Remembers which cells hold bounds of what the atlases hold. Per frame list(), and made() if the pass is recorded; or
-// skip(). Not thread safe.
+// Remembers which cells hold bounds of what the atlases hold. In a frame with bounds call list(), and made() if the
+// pass is recorded. In a frame without them call skip(). Not thread safe.
 class ShadowBoundsCells {
 public:
     // Takes memory once. Throws std::bad_alloc.
     void create(std::uint32_t capacity);
 
-    // Lists the cells to be made: those of changed views, and those never made yet. Sets the views' place in the
-    // buffer; no bounds where the atlases are larger than the capacity. `views` and `gpuViews` are parallel; `out` has
-    // room for the capacity. Returns how many.
+    // Lists the cells to be made into `out`, which has room for the capacity: those of changed shadow views, and those
+    // never made yet. Returns how many. Sets in `gpuViews`, which are parallel to `views`, where their bounds lie in
+    // the buffer. They have none where the atlases are larger than the capacity.
     std::uint32_t list(std::span<const ShadowView> views, std::span<const ShadowAtlas> atlases,
                        gpu::GpuShadowView* gpuViews, gpu::GpuShadowBoundsCell* out) noexcept;
     // The pass that makes the cells last listed is recorded. Without this call they are listed again.
     void made() noexcept;
-    // A frame without bounds: the cells of changed views no longer hold what the atlases hold.
+    // A frame without bounds: the cells of changed shadow views no longer hold what the atlases hold.
     void skip(std::span<const ShadowView> views, std::span<const ShadowAtlas> atlases) noexcept;
 
 private:

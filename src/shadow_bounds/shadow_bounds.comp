@@ -1,11 +1,11 @@
 #version 460
-// Shadow Bounds: the least and the greatest depth of every block of the shadow atlases, from 16x16 to 256x256 texels.
+// Shadow bounds: the least and the greatest depth of every block of the shadow atlases, from 16x16 to 256x256 texels.
 //
 // Problem: most pixels are wholly lit or wholly dark, and a search for blockers takes many texture reads to find out.
 // Source: the min/max shadowmaps of Dmitriev and Uralsky 2007, "Soft Shadows Using Hierarchical Min-Max Shadow Maps".
 // Plain way: one pass per level over whole atlases.
-// Here: one work group makes all five levels of one cell of 256x256 texels, and only cells that a changed view touches
-// are made again. A lane reads 32x32 texels; upper levels meet in shared memory.
+// Here: one work group makes all five levels of one cell of 256x256 texels. Only cells that a changed shadow view
+// touches are made again. A lane reads 32x32 texels. Upper levels meet in shared memory.
 #extension GL_GOOGLE_include_directive : require
 #define GNOMON_SHADOW_BOUNDS_ACCESS
 #include "vulkan/work_group.glsl"

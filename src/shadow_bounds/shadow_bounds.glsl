@@ -4,8 +4,9 @@
 
 #include "gpu_interface/shadowmaps_set.glsl"
 
-// Of a view, over all texels that a box in atlas pixels touches; the box lies in the view's rectangle. Four blocks as
-// wide as the box cover it. `known` is false where the view has no bounds or the box is too large.
+// The bounds of a shadow view, over all texels that a box in atlas pixels touches. The box lies in the view's
+// rectangle. Four blocks as wide as the box cover it. `known` is false where the view has no bounds, or the box is too
+// large.
 vec2 shadowBoundsOver(uint view, vec2 low, vec2 high, out bool known) {
     uint blocks = shadowViews[view].boundsBlocks;
     uint size = uint(ceil(max(high.x - low.x, high.y - low.y)));

@@ -2,8 +2,8 @@
 //
 // Problem: one orthographic map over the whole view is too coarse near the camera.
 // Source: Engel 2006, "Cascaded Shadow Maps", ShaderX5; Valient 2008, "Stable Rendering of Cascaded Shadow Maps".
-// Here: the first cascade that holds the receiver; over the last tenth of its extent the next one is blended in, so
-// that no seam shows; the last blends into light. The host gives the views, of any age.
+// Here: a receiver takes the first cascade that holds it. Over the last tenth of the cascade's extent the next one is
+// blended in, so that no seam shows. The last cascade blends into light. The host gives the shadow views, of any age.
 #ifndef GNOMON_VISIBILITY_CASCADES_GLSL
 #define GNOMON_VISIBILITY_CASCADES_GLSL
 

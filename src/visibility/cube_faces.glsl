@@ -10,10 +10,12 @@ vec3 viewRow(uint view, uint row) {
                 shadowViews[view].clipFromWorld[2][row]);
 }
 
-// A tap beyond the border of a point light's face looks at the face that its direction meets. The
-// receiver's plane and what is stored there, compared in that face and told as depths of the own one. Views are read
-// field by field: two whole ones at once would cost every caller nine registers (docs/register-pressure.md). `tap` is
-// the number of the tap, and adds nothing: what is read here would else be kept through the caller's whole loop.
+// A tap beyond the border of a point light's face looks at the face that its direction meets. There the receiver's
+// plane is compared with what is stored; both are told as depths of the face that the tap left.
+// The two shadow views are read field by field: two whole ones at once would cost every caller nine registers
+// (docs/register-pressure.md).
+// `tap` is the number of the tap, and adds nothing to the result. Without it, what is read here would be kept through
+// the caller's whole loop.
 void otherFace(GpuLight light, ShadowPoint s, uint tap, vec2 px, out float plane, out float stored) {
     uint own = s.view + (tap >> 31u);
     precise vec2 ndc = (px - shadowViews[own].pxFromNdcOffset) / shadowViews[own].pxFromNdcScale;

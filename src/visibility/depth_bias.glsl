@@ -1,18 +1,19 @@
 // Oriented depth bias: at which depth a receiver is compared with each texel of a shadowmap.
 //
-// Problem: a shadowmap holds one depth per texel, that of the texel's centre; a surface seen at a slant is above it on
-// one side of the texel and below it on the other, and shadows itself.
-// Source: the paper, section 4: a constant, 2 mm by default, in *linear* depth along the light's view axis; slopes are
-// met at each texel by the receiver's own face plane.
+// Problem: a shadowmap holds one depth per texel, that of the texel's centre. A surface seen at a slant is above that
+// depth on one side of the texel and below it on the other. So it shadows itself.
+// Source: the paper, section 4: a constant, 2 mm by default, in *linear* depth along the light's view axis. Slopes are
+// met at each texel by the receiver's own face plane, which is ours.
 // Plain way: a hardware bias by slope, in device depth, as large as the widest kernel on the steepest face needs.
-// Here: device depth is affine in a texel's position along any plane, with perspective (A + B / z, and 1 / z is affine)
-// as without. So one depth and one slope per pixel give the plane's depth at every texel's centre: what the rasterizer
-// stored there, if nothing is nearer.
+// Here: along any plane, device depth is affine in a texel's position. That holds with perspective (A + B / z, and 1 /
+// z is affine) as without. So one depth and one slope per pixel give the plane's depth at every texel's centre. That is
+// what the rasterizer stored there, if nothing is nearer.
 // The bias grows by how far the rounding of the camera's depth may have moved the position off its face.
-// Other modes, to compare: the paper's listing 7 (one depth for all texels, nearer to the light or, where the face
-// looks away, farther), and no bias at all, for maps that were drawn with a hardware bias.
-// Limits: the slope of faces that are nearly edge-on to the light is cut at kLeastCosine (0.3 degrees). The map
-// holds the surface as the rasterizer snapped it, 2^-4 (SwiftShader) to 2^-8 texels aside, hence the slack by slope.
+// Other modes, to compare:
+// - the paper's listing 7: one depth for all texels, nearer to the light or, where the face looks away, farther;
+// - no bias at all, for maps that were drawn with a hardware bias.
+// Limits: the slope of faces that are nearly edge-on to the light is cut at kLeastCosine (0.3 degrees). The map holds
+// the surface as the rasterizer snapped it, 2^-4 (SwiftShader) to 2^-8 texels aside. Hence the slack by slope.
 #ifndef GNOMON_VISIBILITY_DEPTH_BIAS_GLSL
 #define GNOMON_VISIBILITY_DEPTH_BIAS_GLSL
 
@@ -24,14 +25,14 @@
 const float kLeastCosine = 0.005;
 const float kSnapPx = 1.0 / 16.0;
 
-// |rays| of a view through ndc, as a multiple of linear depth; `tangent` is where: lateral over linear depth.
+// Length of the ray through a place of a view, for linear depth 1. `tangent` is the place: lateral over linear depth.
 float rayLength(vec2 tangent) {
     precise float squared = tangent.x * tangent.x + (tangent.y * tangent.y + 1.0);
     return sqrt(squared);
 }
 
-// Slope of the device depth of the plane through the receiver with face normal n, per texel. `ndc`, `linear` and
-// `tangent` are the receiver's in the view. `linearPerMetre`: how much linear depth a metre across the face is.
+// Slope per texel of the device depth of a plane: the one through the receiver with face normal n. `ndc`, `linear` and
+// `tangent` are the receiver's place in the view. `linearPerMetre`: how much linear depth a metre off the plane is.
 vec2 planeSlope(GpuShadowView view, bool orthographic, vec3 n, vec2 ndc, float linear, vec2 tangent,
                 out float linearPerMetre) {
     precise vec3 m = vec3(dot(n, view.planeX), dot(n, view.planeY), dot(n, view.planeZ));
@@ -55,9 +56,9 @@ bool movesTowardLight(GpuLight light, Receiver receiver) {
     return receiver.subsurface || facesLight(receiver.faceNormalWs, toLight);
 }
 
-// What rounding may make of a device depth, in the map and here: 16 steps of a float's terms, a step of an atlas of
-// fewer bits, and the rasterizer's snapping. With reversed Z the first is 20 micrometres at 20 m; with standard Z and a
-// near plane of 5 cm, 16 mm, and no smaller bias could hold there.
+// What rounding may make of a device depth, in the map and here. It has three parts: 16 steps of a float's terms, a
+// step of an atlas of fewer bits, and the rasterizer's snapping. With reversed Z the first is 20 micrometres at 20 m.
+// With standard Z and a near plane of 5 cm it is 16 mm, and no smaller bias could hold there.
 float deviceDepthSlack(GpuShadowView view, float depth, vec2 slope) {
     precise float rounding = 1e-6 * (abs(view.depthFromLinearA) + abs(depth - view.depthFromLinearA));
     precise float slack = rounding + view.depthStep + kSnapPx * (abs(slope.x) + abs(slope.y));

@@ -5,7 +5,8 @@
 #include "gpu_interface/numbers.h"
 
 layout(constant_id = kSpecDepthBias) const uint kDepthBias = kDepthBiasOriented;
-layout(constant_id = kSpecFacedAwayIsDark) const uint kFacedAwayIsDark = 1;  // 0: pixels that look away from a light ask its shadowmap
+// 0: pixels that look away from a light ask its shadowmap.
+layout(constant_id = kSpecFacedAwayIsDark) const uint kFacedAwayIsDark = 1;
 
 const bool kNeedsFaceNormals = kDepthBias != kDepthBiasUnbiased || kFacedAwayIsDark != 0u;
 

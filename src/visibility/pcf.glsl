@@ -1,11 +1,11 @@
 // Visibility provider "pcf": percentage closer filtering, (2r + 1)^2 bilinear comparisons.
 //
 // Source: Reeves, Salesin, Cook 1987, "Rendering Antialiased Shadows with Depth Maps".
-// Plain way: (2r + 1)^2 hardware comparisons with bilinear filtering, whose weights are a driver's own 8-bit ones, and
-// which compare one depth with four texels.
-// Here: their sum is a weighted sum over (2r + 2)^2 texels with weight 1 - f at the first row and column, f at the last
-// and 1 between. (r + 1)^2 gathers fetch them, each is compared with the receiver's plane at its own centre, and the
-// weights are exact, so that every pipeline and device agrees.
+// Plain way: (2r + 1)^2 hardware comparisons with bilinear filtering. Their weights are a driver's own 8-bit ones, and
+// each compares one depth with four texels.
+// Here: their sum is a weighted sum over (2r + 2)^2 texels. The weight is 1 - f at the first row and column, f at the
+// last, and 1 between. (r + 1)^2 gathers fetch the texels. Each texel is compared with the receiver's plane at its own
+// centre. The weights are exact, so that every pipeline and device agrees.
 float pcfVisibility(ShadowPoint s) {
     float border = float(kPcfRadius) + 1.0;
     precise vec2 corner = clamp(s.corner, s.rectMin + border - 0.5, s.rectMax - border - 0.5) - float(kPcfRadius);

@@ -1,20 +1,23 @@
 // Visibility provider "pcss": percentage closer soft shadows, the penumbra of a light with a size.
 //
-// Problem: a shadow is sharp where it touches its blocker and widens with the distance from it.
+// Problem: a shadow is sharp where it touches its blocker, and widens with the distance from it.
 // Source: Fernando 2005, "Percentage-Closer Soft Shadows". Its penumbra is (z - zb) / zb times the source's size.
-// Plain way: average the blockers in a region of fixed width, then average comparisons in a region as wide as the
+// Plain way: average the blockers in a region of fixed width. Then average comparisons in a region as wide as the
 // penumbra of that average.
-// Here: (1) The disk that the source is, seen from the receiver through the map, is a disk whose radius is linear in
-// the blocker's *device* depth, with and without perspective: one multiplication per stored depth. So (2) each blocker
-// is asked whether it lies in the disk of its own depth, which makes a wide search harmless: what the source cannot see
-// does not count. (3) Search taps, four texels each, crowd toward the middle (radius by the square), where near
-// blockers must be found; filter taps are spread evenly, each a bilinear comparison. (4) A pixel in which no texel of
-// the search is a blocker is lit, one in which all occlude is dark. (Shadow bounds, where the host has them made, tell
-// that of many pixels before any tap.) (5) The pattern is a spiral of golden angles, turned per pixel by a sequence of
-// low discrepancy in whole numbers: every pipeline and device sees the same one. (6) A blocker is nearer to the light
-// than the receiver: a tap's plane depth grows beyond the receiver's by one texel's slope at most, else walls behind
-// the receiver would shadow it.
-// Limits: one depth per texel stands for all blockers behind each other; radii beyond kMaxPcssRadiusPx texels are cut.
+// Here:
+// 1. Seen from the receiver through the map, the source is a disk. The disk's radius is linear in the blocker's
+//    *device* depth, with and without perspective. So it costs one multiplication per stored depth.
+// 2. Each blocker is asked whether it lies in the disk of its own depth. What the source cannot see does not count. So
+//    a wide search does no harm.
+// 3. Search taps, four texels each, crowd toward the middle (radius by the square), where near blockers must be found.
+//    Filter taps are spread evenly, each a bilinear comparison.
+// 4. A pixel in which no texel of the search is a blocker is lit. One in which all occlude is dark. Shadow bounds,
+//    where the host has them made, tell that of many pixels before any tap.
+// 5. The pattern is a spiral of golden angles. Each pixel turns it by a sequence of low discrepancy in whole numbers.
+//    So every pipeline and device sees the same one.
+// 6. A blocker must be nearer to the light than the receiver. So a tap's plane depth grows beyond the receiver's by one
+//    texel's slope at most. Else walls behind the receiver would shadow it.
+// Limits: one depth per texel stands for all blockers behind each other. Radii beyond kMaxPcssRadiusPx texels are cut.
 #ifndef GNOMON_VISIBILITY_PCSS_GLSL
 #define GNOMON_VISIBILITY_PCSS_GLSL
 

@@ -5,8 +5,8 @@
 #include "visibility/pcss_kernel.glsl"
 #include "shadow_bounds/shadow_bounds.glsl"
 
-// Loops over taps count to numbers of the frame: a compiler that knew them would unroll the loops, at the cost of
-// registers. With one preset there is nothing to choose.
+// Loops over taps count to numbers of the frame, not to constants: a compiler that knew the numbers would unroll the
+// loops, at the cost of registers. With one preset there is nothing to choose.
 layout(constant_id = kSpecPcssPresets) const uint kPcssPresets = 1;
 
 uint pcssPresetOf(GpuLight light) {
@@ -33,9 +33,10 @@ void countBlockers(vec4 plane, vec4 stored, float farthest, inout Blockers found
     found.depths = depths;
 }
 
-// What the shadow bounds tell of a search of radius `reach` that stays in the rectangle. True where they tell all. Else
-// `needed` is the radius beyond which no blocker can be: the nearest depth in the region bounds what the source can see
-// of it, and a smaller region may hold only farther ones.
+// What the shadow bounds tell of a search of radius `reach` that stays in the rectangle. True where they tell its whole
+// result. Else `needed` is the radius beyond which no blocker can be. It is found in two rounds: the nearest depth in a
+// region bounds what the source can see of the region, and the smaller region that is left may hold only farther
+// depths.
 bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, out float needed, out float visibility) {
     needed = reach;
     visibility = 1.0;
@@ -67,8 +68,8 @@ float searchRadius(uint preset, uint tap, float reach) {
     return radius;
 }
 
-// The filter's radius; or below 0 where no filter is needed, and then `visibility` is known. Two loops: where all taps
-// stay inside the rectangle, nothing stands between the texture reads.
+// Returns the filter's radius. Below 0 no filter is needed, and `visibility` is known. There are two loops, so that
+// nothing stands between the texture reads where all taps stay inside the rectangle.
 float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visibility) {
     uint preset = pcssPresetOf(light);
     precise float reach = k.widest + k.texel;

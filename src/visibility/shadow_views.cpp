@@ -72,8 +72,9 @@ Row cross(const Row& a, const Row& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// See GpuShadowView. With clip.xyw = (x p, y p, z p) up to constants, a plane's ndc and the inverse of its linear depth
-// (orthographic: the depth itself) depend on each other linearly, with the cross products of the rows as coefficients.
+// What the shader makes of this stands at GpuShadowView::planeX. The rows x, y and z of the matrix give clip.xyw as
+// (x p, y p, z p), up to constants. So along a plane, the inverse of linear depth (orthographic: the depth itself) is
+// linear in ndc. The coefficients are the cross products of the rows.
 bool setPlane(const float* m, bool orthographic, double b, float depthStep, gpu::GpuShadowView& v) {
     const auto row = [&](int i, double scale) {
         return Row{double(m[i]) * scale, double(m[i + 4]) * scale, double(m[i + 8]) * scale};

@@ -7,10 +7,10 @@
 #include "shading/light_tests.glsl"
 #include "shading/receiver.glsl"
 
-// A receiver in a shadow view, biased and ready to be compared. Device depths here have the sign that makes greater
-// ones nearer to the light.
+// A receiver in a shadow view, biased and ready to be compared. Device depths have a sign here that makes greater ones
+// nearer to the light, whatever the kind of depth.
 struct ShadowPoint {
-    vec2 corner;   // in the atlas, less half a texel: whole numbers are texel centres; may lie outside the rectangle
+    vec2 corner;   // place in the atlas, less half a texel (whole numbers are centres); may be outside the rectangle
     vec2 rectMin;  // the rectangle's first pixel
     vec2 rectMax;  // one past its last
     float sign;    // times a stored depth

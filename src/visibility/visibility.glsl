@@ -1,9 +1,11 @@
 // The visibility of a light from a pixel, quantised: the one function behind slots, EVALUATE and inline shadows.
 //
 // Problem: a frame must not depend on which pair got a slot and which is evaluated while lighting.
-// What we do: every evaluation, wherever it happens, returns the value that a slot can hold, and everything before it
-// is precise, so that different pipelines compute the same bits. They are perceptual: q = round(255 * sqrt(v)), or 15.
-// A host's own provider: -DGNOMON_HOST_PROVIDER and, on the include path, gnomon_host_provider.glsl, which defines
+// What we do: every evaluation, wherever it happens, returns a value that a slot can hold. Everything before it is
+// precise, so that different pipelines compute the same bits. The values are perceptual: q = round(255 * sqrt(v)), or
+// 15 in place of 255 with slots of 4 bits.
+// A host's own provider: compile with -DGNOMON_HOST_PROVIDER, and with a gnomon_host_provider.glsl on the include path.
+// That file defines
 //     float hostVisibility(GpuLight light, Receiver receiver, vec3 toLight);   // 0 dark to 1 lit
 #ifndef GNOMON_VISIBILITY_VISIBILITY_GLSL
 #define GNOMON_VISIBILITY_VISIBILITY_GLSL
@@ -38,8 +40,8 @@ float viewVisibility(uint viewIndex, GpuLight light, Receiver receiver) {
     return 1.0;
 }
 
-// The first cascade that holds the receiver, blended with the next one where that holds it too; the last blends into
-// light.
+// The first cascade that holds the receiver. It is blended with the next one where that holds the receiver, too. The
+// last one blends into light.
 float cascadedVisibility(GpuLight light, Receiver receiver) {
     uint count = cascadeCount(light);
     float border;

@@ -1,6 +1,6 @@
 #pragma once
 // A pass as it declares itself, in its own room beside its shader. Barriers, bindings, label, timeline row and pipeline
-// follow from the declaration; a test compares it with the compiled shader, both ways.
+// follow from the declaration. A test compares it with the compiled shader, both ways.
 
 #include <cstdint>
 #include <span>

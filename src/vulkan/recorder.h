@@ -11,8 +11,8 @@
 
 namespace gnomon {
 
-// Orders passes that share buffers. One global memory barrier orders everything recorded so far, so what is pending is
-// told by the number of barriers alone: a use counts as long as no barrier has come after it.
+// Orders passes that share buffers. Barriers are global memory barriers: one orders everything recorded before it. So
+// it is enough to number them: a use is pending as long as no barrier has come after it.
 class BarrierTracker {
 public:
     struct Use {

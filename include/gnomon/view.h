@@ -36,7 +36,7 @@
 namespace gnomon {
 
 struct ViewDesc {
-    std::uint32_t maxWidthPx = 3840, maxHeightPx = 2160;
+    std::uint32_t maxWidthPx = 3840, maxHeightPx = 2160;  ///< 1 to 16384 each; at most 4,186,127 tiles of 8x8
     std::uint32_t framesInFlight = 2;  ///< 1 to 4: frames the host records before the oldest has finished
     /// Pools. 0: 8 per shadow tile on average. Capped by the device's largest storage buffer: see MemoryReport.
     std::uint32_t listEntries = 0;
@@ -128,7 +128,9 @@ struct FrameStatistics {
     std::uint32_t accurateExceedsApproximate = 0;  ///< must be 0
     std::uint32_t evaluateTiles = 0;               ///< shaded by the second lighting pipeline
     std::uint32_t recommendedListEntries = 0;      ///< capacities with which this frame would not have overflowed
-    std::uint32_t recommendedVisibilitySlots = 0;  ///< where lists overflow: without `statistics` a lower bound
+    /// In slots of the frame's own ShadowSettings::visibilityBits, as all counts of slots here; where lists overflow,
+    /// without ViewDesc::statistics, a lower bound.
+    std::uint32_t recommendedVisibilitySlots = 0;
     // Only with ViewDesc::statistics:
     std::uint32_t tilesWithGeometry = 0;
     std::uint32_t approximateEntries = 0, earlyEntries = 0, earlyCastingEntries = 0;

@@ -200,6 +200,10 @@ Result growPools(View::State& state, std::uint64_t frameNumber) {
     // Whole words; a pool as it is stays as it is.
     desc.listEntries = entries <= state.sizes.listEntries ? state.sizes.listEntries : roundUpToEarlyWord(entries);
     desc.visibilitySlots = slots;
+    // The device may hold no more: then nothing is gained, in this frame as in later ones.
+    const ViewSizes wanted = viewSizesOf(state.context->device, desc);
+    if (wanted.listEntries <= state.sizes.listEntries && wanted.visibilitySlots <= state.sizes.visibilitySlots)
+        return {};
     return state.resize(desc);
 }
 

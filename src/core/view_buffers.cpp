@@ -70,10 +70,12 @@ Result checkViewDesc(const ViewDesc& desc) noexcept {
     }
     const std::uint64_t tiles = std::uint64_t(divideRoundingUp(desc.maxWidthPx, kShadowTileSizePx)) *
                                 divideRoundingUp(desc.maxHeightPx, kShadowTileSizePx);
-    if (tiles * roundUpToEarlyWord(kMaxLightsPerView) > 0xFFFFFFFFu) {
+    const std::uint64_t mostTiles = 0xFFFFFFFFu / roundUpToEarlyWord(kMaxLightsPerView);
+    if (tiles > mostTiles) {
         return Result::failure(Status::BadArgument,
-                               "A view of %ux%u pixels has more tiles than list space can be counted for.",
-                               desc.maxWidthPx, desc.maxHeightPx);
+                               "A view of %ux%u pixels has %llu tiles of 8x8; list space can be counted for %llu.",
+                               desc.maxWidthPx, desc.maxHeightPx, static_cast<unsigned long long>(tiles),
+                               static_cast<unsigned long long>(mostTiles));
     }
     if (desc.framesInFlight == 0 || desc.framesInFlight > kMaxFramesInFlight) {
         return Result::failure(Status::BadArgument, "ViewDesc::framesInFlight is %u; it must be 1 to %u.",

@@ -1,6 +1,9 @@
 #pragma once
 // All passes of a view, in the order of the paper's figure 1. Each declares itself in its own room.
 
+#include <cstdint>
+#include <iterator>
+
 #include "find_lights_accurate/find_lights_accurate.h"
 #include "find_lights_approximate/find_lights_approximate.h"
 #include "generate_shadows/generate_shadows.h"
@@ -21,11 +24,11 @@ enum PassId : std::uint32_t {
 };
 
 using PassDeclaration = const Pass& (*)() noexcept;
-inline constexpr PassDeclaration kPasses[kPassCount] = {
+inline constexpr PassDeclaration kPasses[] = {
     hierarchicalDepthPass, findLightsApproximatePass, findLightsAccuratePass,
     shadowBoundsPass,      generateShadowsPass,       gatherStatisticsPass,
 };
-static_assert(kPasses[kPassCount - 1] != nullptr, "a pass of the enumeration is not in the table");
+static_assert(std::size(kPasses) == kPassCount);
 
 inline const Pass& passOf(PassId id) noexcept {
     return kPasses[id]();

@@ -36,7 +36,7 @@ namespace {
 
 constexpr std::uint32_t kWidthPx = 480, kHeightPx = 270, kAtlasPx = 2048;
 constexpr std::uint32_t kFramesInFlight = 2;
-constexpr std::uint64_t kFrames = 6;
+constexpr std::uint64_t kFrames = 4;
 
 // The library throws nothing. A call that fails says what to do in one sentence.
 void check(const gnomon::Result& result) {

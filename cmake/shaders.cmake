@@ -6,7 +6,7 @@
 # Compiled for Vulkan 1.2, so that hosts need not enable maintenance4 (SPIR-V 1.6 writes the work group size as ids).
 #
 # This file is part of the installed package, too. GNOMON_SHADER_INCLUDE_DIR is set before it is included.
-find_program(GLSLC glslc HINTS $ENV{VULKAN_SDK}/bin)
+find_program(GLSLC glslc HINTS ENV VULKAN_SDK PATH_SUFFIXES bin)
 
 function(gnomon_compile_shaders target)
     if(NOT GLSLC)

@@ -1,4 +1,4 @@
-# gnomon_compile_shaders(TARGET shader... [INCLUDES folder...])
+# gnomon_add_shaders(TARGET shader... [INCLUDES folder...])
 # Compiles each GLSL file to SPIR-V and to a header NAME.spv.h that holds it as a list of words. The headers are on
 # TARGET's include path; the .spv files lie beside them for tests that reflect them.
 # - A shader given as FILE:NAME:DEFINE[:DEFINE...] is compiled under another name with macros.
@@ -8,9 +8,9 @@
 # This file is part of the installed package, too. GNOMON_SHADER_INCLUDE_DIR is set before it is included.
 find_program(GLSLC glslc HINTS ENV VULKAN_SDK PATH_SUFFIXES bin)
 
-function(gnomon_compile_shaders target)
+function(gnomon_add_shaders target)
     if(NOT GLSLC)
-        message(FATAL_ERROR "gnomon_compile_shaders() needs glslc, which was not found. Install it (the package 'glslc' of "
+        message(FATAL_ERROR "gnomon_add_shaders() needs glslc, which was not found. Install it (the package 'glslc' of "
                             "Debian and Ubuntu, or the Vulkan SDK), or set GLSLC to its path.")
     endif()
     cmake_parse_arguments(PARSE_ARGV 1 arg "" "" INCLUDES)

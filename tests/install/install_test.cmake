@@ -120,7 +120,7 @@ endfunction()
 function(check_refusals)
     file(GLOB_RECURSE helper ${prefix}/*/shaders.cmake)
     check_refusal(no_glslc "needs glslc, which was not found"
-        "include(${helper})\ngnomon_compile_shaders(host light.comp)"
+        "include(${helper})\ngnomon_add_shaders(host light.comp)"
         -DCMAKE_FIND_USE_SYSTEM_ENVIRONMENT_PATH=OFF -DCMAKE_FIND_USE_CMAKE_SYSTEM_PATH=OFF)
     check_refusal(other_version "Could not find a configuration file for package \"gnomon\" that is compatible"
         "find_package(gnomon 0.999 CONFIG REQUIRED PATHS ${prefix} NO_DEFAULT_PATH)")

@@ -1,9 +1,9 @@
 #version 460
 // The host's lighting, one work group per shadow tile. Two pipelines from one file:
 //
-//   all tiles      reads lists and stored visibility. It has no set of shadowmaps: that is where the technique saves its
-//                  registers.
-//   with EVALUATE  the few tiles in which a pool ran out. It evaluates shadows itself, and makes the very picture that
+//   all tiles      Reads lists and stored visibility. It has no set of shadowmaps: that is where the technique saves
+//                  its registers.
+//   with EVALUATE  The few tiles in which a pool ran out. It evaluates shadows itself, and makes the very picture that
 //                  larger pools would have given.
 #extension GL_GOOGLE_include_directive : require
 

@@ -16,11 +16,14 @@
 // into the host's command buffer; it never submits and never waits.
 #include <gnomon/gnomon.h>
 
+#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 #include "drawing.h"
 #include "lighting.h"
@@ -33,7 +36,7 @@ namespace {
 
 constexpr std::uint32_t kWidthPx = 480, kHeightPx = 270, kAtlasPx = 2048;
 constexpr std::uint32_t kFramesInFlight = 2;
-constexpr std::uint64_t kFrames = 6;
+constexpr std::uint64_t kFrames = 4;
 
 // The library throws nothing. A call that fails says what to do in one sentence.
 void check(const gnomon::Result& result) {
@@ -256,7 +259,14 @@ void run(const Arguments& arguments) {
 }  // namespace host
 
 int main(int argc, char** argv) try {
-    const auto number = [&](int i) { return argc > i ? static_cast<std::uint32_t>(std::stoul(argv[i])) : 0u; };
+    const auto number = [&](int i) {
+        const std::string_view text = argc > i ? argv[i] : "0";
+        std::uint32_t value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error != std::errc() || end != text.data() + text.size())
+            throw std::runtime_error("The argument '" + std::string(text) + "' is no number.");
+        return value;
+    };
     host::Arguments arguments;
     if (argc > 1) arguments.picture = argv[1];
     arguments.device = number(2);

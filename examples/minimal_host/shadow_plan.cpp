@@ -34,8 +34,8 @@ std::uint32_t wishedPx(const gnomon::LightOnScreen& light) {
     return std::max(std::bit_ceil(static_cast<std::uint32_t>(pixels)), kLeastPx);
 }
 
-// The n-th square along a Morton curve, in squares. Squares of powers of two that are placed along it from the largest
-// to the smallest fill the atlas without gaps.
+// Every second bit of n. The n-th square along a Morton curve is at (evenBits(n), evenBits(n >> 1)). Squares of powers
+// of two that are placed along it from the largest to the smallest fill the atlas without gaps.
 std::uint32_t evenBits(std::uint64_t n) {
     std::uint32_t out = 0;
     for (std::uint32_t bit = 0; bit < 32; ++bit) out |= static_cast<std::uint32_t>(n >> (2 * bit) & 1) << bit;

@@ -228,15 +228,23 @@ Result View::State::resize(const ViewDesc& to) {
     PrepareDesc prepareDesc = to.prepare;
     prepareDesc.maxWidthPx = to.maxWidthPx;
     prepareDesc.maxHeightPx = to.maxHeightPx;
-    if (prepare == nullptr) {
+    const bool otherPrepare = to.maxWidthPx != desc.maxWidthPx || to.maxHeightPx != desc.maxHeightPx ||
+                              to.prepare.rangeCutoffLux != desc.prepare.rangeCutoffLux ||
+                              to.prepare.keepFactor != desc.prepare.keepFactor;
+    const bool first = prepare == nullptr;
+    if (first) {
         if (Result made = Prepare::create(prepareDesc, prepare); !made) return made;
-    } else if (to.maxWidthPx != desc.maxWidthPx || to.maxHeightPx != desc.maxHeightPx) {
-        if (Result made = prepare->resize(prepareDesc); !made) return made;
+    } else if (otherPrepare) {
         isPrepared = false;
+        if (Result made = prepare->resize(prepareDesc); !made) return made;
     }
     const bool otherBounds =
         wanted.boundsCells != sizes.boundsCells || to.shadowBoundsTexels != desc.shadowBoundsTexels;
-    if (Result made = buffers.make(context->device, to, sizes, wanted, lastFrame); !made) return made;
+    if (Result made = buffers.make(context->device, to, sizes, wanted, lastFrame); !made) {
+        // Phase 1 may not write beyond the buffers that are kept. Back to what was there needs no memory.
+        if (!first && otherPrepare) (void)prepare->resize(desc.prepare);
+        return made;
+    }
     if (!anyFrame) buffers.release(context->device, ~0ull, 0);
     if (otherBounds) boundsCells.create(to.shadowBoundsTexels == 0 ? 0 : wanted.boundsCells);
     desc = to;

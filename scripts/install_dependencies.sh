@@ -50,6 +50,12 @@ if [ "${#missing[@]}" != 0 ] && ! install_missing; then
     exit 1
 fi
 
+# A second compiler for the tests; they say so where there is none.
+if [ "${1:-}" = --test ] && ! command -v clang++ >/dev/null; then
+    missing=(clang)
+    install_missing || echo "Clang is not available here: nothing is compiled with it."
+fi
+
 # A second Vulkan implementation for the tests: SwiftShader, which Debian ships within Chromium. Ubuntu's chromium is a
 # snap that has no such file, and the tests do without.
 if [ "${1:-}" = --test ] && ! is_installed chromium; then

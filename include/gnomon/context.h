@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 
+#include "gnomon/export.h"
 #include "gnomon/result.h"
 #include "gnomon/settings.h"
 
@@ -44,7 +45,7 @@ struct SpecializationValues {
 };
 
 /// create() and the destructor: one thread at a time per device. All else is thread safe.
-class Context {
+class GNOMON_API Context {
 public:
     static Result create(const ContextDesc& desc, std::unique_ptr<Context>& out) noexcept;
     ~Context();

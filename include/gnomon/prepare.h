@@ -10,6 +10,7 @@
 #include <memory>
 #include <span>
 
+#include "gnomon/export.h"
 #include "gnomon/result.h"
 #include "gnomon/scene.h"
 
@@ -73,11 +74,11 @@ struct PreparedLights {
 };
 
 /// Thread safe; no failure.
-PrepareSizes prepareSizes(std::uint32_t widthPx, std::uint32_t heightPx) noexcept;
+GNOMON_API PrepareSizes prepareSizes(std::uint32_t widthPx, std::uint32_t heightPx) noexcept;
 
 /// The state of phase 1 for one view: scratch memory, and which lights were kept last frame. Not thread safe; different
 /// objects are independent. Allocates nothing unless the number of given lights grows.
-class Prepare {
+class GNOMON_API Prepare {
 public:
     static Result create(const PrepareDesc& desc, std::unique_ptr<Prepare>& out) noexcept;
     ~Prepare();

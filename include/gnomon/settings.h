@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "gnomon/export.h"
 #include "gnomon/result.h"
 
 namespace gnomon {
@@ -92,6 +93,6 @@ struct ShadowSettings {
 };
 
 /// Fails with a sentence on the first value outside its range. Thread safe.
-Result checkSettings(const ShadowSettings& settings) noexcept;
+GNOMON_API Result checkSettings(const ShadowSettings& settings) noexcept;
 
 }  // namespace gnomon

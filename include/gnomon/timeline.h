@@ -14,6 +14,7 @@
 #include <memory>
 #include <span>
 
+#include "gnomon/export.h"
 #include "gnomon/result.h"
 
 namespace gnomon {
@@ -54,7 +55,7 @@ struct TimelineDesc {
 };
 
 /// Not thread safe. Needs queues with timestamps in all families of the context: else it records nothing.
-class Timeline {
+class GNOMON_API Timeline {
 public:
     /// A row that was begun; kNone where it is not recorded.
     using Row = std::uint32_t;

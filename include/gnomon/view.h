@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "gnomon/context.h"
+#include "gnomon/export.h"
 #include "gnomon/prepare.h"
 #include "gnomon/result.h"
 #include "gnomon/scene.h"
@@ -67,7 +68,7 @@ struct BufferMemory {
     bool mapped = false;    ///< host-visible
 };
 
-class MemoryReport {
+class GNOMON_API MemoryReport {
 public:
     [[nodiscard]] std::span<const BufferMemory> buffers() const noexcept { return buffers_; }
     std::uint64_t totalBytes = 0;       ///< with all copies
@@ -141,7 +142,7 @@ struct FrameStatistics {
 
 /// The buffers of one camera. Not thread safe; different views are independent, and record calls of one frame may go to
 /// different command buffers as long as they are made, and executed, in the order given above.
-class View {
+class GNOMON_API View {
 public:
     /// What create() will allocate. Thread safe.
     static Result memory(const Context& context, const ViewDesc& desc, MemoryReport& out) noexcept;

@@ -7,7 +7,7 @@
 
 namespace gnomon {
 
-struct Context::State {
+struct GNOMON_HIDDEN Context::State {
     DeviceContext device;
     std::uint32_t subgroupSize = 0;
     bool requireSubgroupSize = false;  // pipelines ask for it; else the device has no other

@@ -26,7 +26,7 @@ Result checkDesc(const TimelineDesc& desc) {
 
 }  // namespace
 
-struct Timeline::State {
+struct GNOMON_HIDDEN Timeline::State {
     struct Recorded {
         const char* name;
         Phase phase;

@@ -25,7 +25,7 @@ struct FrameInFlight {
     std::uint32_t listCapacity = 0, slotCapacity = 0;
 };
 
-struct View::State {
+struct GNOMON_HIDDEN View::State {
     Context::State* context = nullptr;
     ViewDesc desc;
     ViewSizes sizes;

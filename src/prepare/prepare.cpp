@@ -26,7 +26,7 @@ namespace gnomon {
 
 using gpu::divideRoundingUp;
 
-struct Prepare::State {
+struct GNOMON_HIDDEN Prepare::State {
     PrepareDesc desc;
     prepare::CullAndSort cullAndSort;
     prepare::ScreenGrid grid;

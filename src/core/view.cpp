@@ -196,15 +196,13 @@ Result growPools(View::State& state, std::uint64_t frameNumber) {
     const std::uint32_t slots =
         grown(inPoolBits(finished.visibilitySlots), state.sizes.visibilitySlots,
               static_cast<std::uint32_t>(inPoolBits(finished.recommendedVisibilitySlots)), desc.mostVisibilitySlots);
-    if (entries <= state.sizes.listEntries && slots <= state.sizes.visibilitySlots) return {};
-    // Whole words; a pool as it is stays as it is.
-    desc.listEntries = entries <= state.sizes.listEntries ? state.sizes.listEntries : roundUpToEarlyWord(entries);
+    desc.listEntries = entries;
     desc.visibilitySlots = slots;
-    // The device may hold no more: then nothing is gained, in this frame as in later ones.
+    // Whole words, and what the device allows: there may be nothing to gain.
     const ViewSizes wanted = viewSizesOf(state.context->device, desc);
-    if (wanted.listEntries <= state.sizes.listEntries && wanted.visibilitySlots <= state.sizes.visibilitySlots)
-        return {};
-    return state.resize(desc);
+    const bool larger =
+        wanted.listEntries > state.sizes.listEntries || wanted.visibilitySlots > state.sizes.visibilitySlots;
+    return larger ? state.resize(desc) : Result();
 }
 
 Result checkKept(const ViewDesc& from, const ViewDesc& to) {
@@ -213,6 +211,11 @@ Result checkKept(const ViewDesc& from, const ViewDesc& to) {
         return {};
     return Result::failure(Status::BadArgument,
                            "View::resize() cannot change framesInFlight, guardBytes or statistics; make another View.");
+}
+
+bool samePrepare(const PrepareDesc& a, const PrepareDesc& b) {
+    return a.maxWidthPx == b.maxWidthPx && a.maxHeightPx == b.maxHeightPx && a.rangeCutoffLux == b.rangeCutoffLux &&
+           a.keepFactor == b.keepFactor;
 }
 
 }  // namespace
@@ -232,11 +235,8 @@ Result View::State::resize(const ViewDesc& to) {
     PrepareDesc prepareDesc = to.prepare;
     prepareDesc.maxWidthPx = to.maxWidthPx;
     prepareDesc.maxHeightPx = to.maxHeightPx;
-    const bool otherPrepare = to.maxWidthPx != desc.maxWidthPx || to.maxHeightPx != desc.maxHeightPx ||
-                              to.prepare.rangeCutoffLux != desc.prepare.rangeCutoffLux ||
-                              to.prepare.keepFactor != desc.prepare.keepFactor;
-    const bool first = prepare == nullptr;
-    if (first) {
+    const bool otherPrepare = prepare != nullptr && !samePrepare(prepareDesc, desc.prepare);
+    if (prepare == nullptr) {
         if (Result made = Prepare::create(prepareDesc, prepare); !made) return made;
     } else if (otherPrepare) {
         isPrepared = false;
@@ -245,8 +245,7 @@ Result View::State::resize(const ViewDesc& to) {
     const bool otherBounds =
         wanted.boundsCells != sizes.boundsCells || to.shadowBoundsTexels != desc.shadowBoundsTexels;
     if (Result made = buffers.make(context->device, to, sizes, wanted, lastFrame); !made) {
-        // Phase 1 may not write beyond the buffers that are kept. Back to what was there needs no memory.
-        if (!first && otherPrepare) (void)prepare->resize(desc.prepare);
+        if (otherPrepare) (void)prepare->resize(desc.prepare);  // phase 1 may write no more than the buffers hold
         return made;
     }
     if (!anyFrame) buffers.release(context->device, ~0ull, 0);

@@ -1,4 +1,6 @@
 // Taps of a soft shadow that leave their face of a point light. Included by pcss_kernel.glsl, whose kernel it uses.
+#ifndef GNOMON_VISIBILITY_CUBE_FACES_GLSL
+#define GNOMON_VISIBILITY_CUBE_FACES_GLSL
 
 bool leavesFace(ShadowPoint s, PcssKernel k, vec2 corner) {
     return k.cube && (any(lessThan(corner, s.rectMin + 0.5)) || any(greaterThan(corner, s.rectMax - 1.5)));
@@ -49,3 +51,5 @@ void otherFace(GpuLight light, ShadowPoint s, uint tap, vec2 px, out float plane
     bool occludes = reversed ? there > receiver : there < receiver;
     plane = occludes ? -2.0 : 2.0;
 }
+
+#endif

@@ -6,6 +6,9 @@
 // Here: their sum is a weighted sum over (2r + 2)^2 texels. The weight is 1 - f at the first row and column, f at the
 // last, and 1 between. (r + 1)^2 gathers fetch the texels. Each texel is compared with the receiver's plane at its own
 // centre. The weights are exact, so that every pipeline and device agrees.
+#ifndef GNOMON_VISIBILITY_PCF_GLSL
+#define GNOMON_VISIBILITY_PCF_GLSL
+
 float pcfVisibility(ShadowPoint s) {
     float border = float(kPcfRadius) + 1.0;
     precise vec2 corner = clamp(s.corner, s.rectMin + border - 0.5, s.rectMax - border - 0.5) - float(kPcfRadius);
@@ -27,3 +30,5 @@ float pcfVisibility(ShadowPoint s) {
     precise float visibility = sum / taps;
     return visibility;
 }
+
+#endif

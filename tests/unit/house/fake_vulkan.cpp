@@ -51,34 +51,13 @@ VKAPI_ATTR void VKAPI_CALL getProperties2(VkPhysicalDevice, VkPhysicalDeviceProp
     }
 }
 
-// Every feature is there: structures of features are sType, pNext and then VkBool32 alone.
-VKAPI_ATTR void VKAPI_CALL getFeatures2(VkPhysicalDevice, VkPhysicalDeviceFeatures2* out) {
-    const auto fill = [](void* structure, std::size_t bytes) {
-        auto* flags = reinterpret_cast<VkBool32*>(static_cast<char*>(structure) + sizeof(VkBaseOutStructure));
-        std::fill_n(flags, (bytes - sizeof(VkBaseOutStructure)) / sizeof(VkBool32), VK_TRUE);
-    };
-    fill(out, sizeof(*out));
-    for (auto* next = static_cast<VkBaseOutStructure*>(out->pNext); next != nullptr; next = next->pNext) {
-        switch (next->sType) {
-            case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES:
-                fill(next, sizeof(VkPhysicalDeviceVulkan11Features));
-                break;
-            case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES:
-                fill(next, sizeof(VkPhysicalDeviceVulkan12Features));
-                break;
-            case VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES:
-                fill(next, sizeof(VkPhysicalDeviceVulkan13Features));
-                break;
-            default: break;
-        }
-    }
+VKAPI_ATTR void VKAPI_CALL getMemory(VkPhysicalDevice, VkPhysicalDeviceMemoryProperties* out) {
+    *out = {};
 }
-
-VKAPI_ATTR void VKAPI_CALL getMemory(VkPhysicalDevice, VkPhysicalDeviceMemoryProperties* out) { *out = {}; }
 
 VKAPI_ATTR void VKAPI_CALL getFamilies(VkPhysicalDevice, std::uint32_t* count, VkQueueFamilyProperties* out) {
     *count = 1;
-    if (out != nullptr) out[0] = {VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT, 1, 64, {1, 1, 1}};
+    if (out != nullptr) out[0] = {VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT, 1, current->timestampBits, {1, 1, 1}};
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL createSetLayout(VkDevice, const VkDescriptorSetLayoutCreateInfo* info,
@@ -94,9 +73,17 @@ VKAPI_ATTR VkResult VKAPI_CALL createSetLayout(VkDevice, const VkDescriptorSetLa
     return VK_SUCCESS;
 }
 
+VKAPI_ATTR VkResult VKAPI_CALL createShaderModule(VkDevice, const VkShaderModuleCreateInfo* info,
+                                                  const VkAllocationCallbacks*, VkShaderModule* out) {
+    const VkResult result = make(out);
+    if (result == VK_SUCCESS) current->modules[*out] = info->codeSize;
+    return result;
+}
+
 FakeVulkan::Pipeline describe(const VkPipelineShaderStageCreateInfo& stage) {
     FakeVulkan::Pipeline out;
     out.stageFlags = stage.flags;
+    out.spirvBytes = current->modules[stage.module];
     if (stage.pNext != nullptr) {
         const auto* size = static_cast<const VkPipelineShaderStageRequiredSubgroupSizeCreateInfo*>(stage.pNext);
         if (size->sType == VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_REQUIRED_SUBGROUP_SIZE_CREATE_INFO) {
@@ -106,7 +93,6 @@ FakeVulkan::Pipeline describe(const VkPipelineShaderStageCreateInfo& stage) {
     const VkSpecializationInfo* info = stage.pSpecializationInfo;
     for (std::uint32_t i = 0; info != nullptr && i < info->mapEntryCount; ++i) {
         const VkSpecializationMapEntry& entry = info->pMapEntries[i];
-        out.constants.resize(std::max<std::size_t>(out.constants.size(), entry.constantID + 1u));
         std::memcpy(&out.constants[entry.constantID], static_cast<const char*>(info->pData) + entry.offset, entry.size);
     }
     return out;
@@ -124,11 +110,17 @@ VKAPI_ATTR VkResult VKAPI_CALL createComputePipelines(VkDevice, VkPipelineCache,
 }
 
 // Stands for every function that creating a context has no reason to call.
-VKAPI_ATTR void VKAPI_CALL neverCalled() { std::abort(); }
+VKAPI_ATTR void VKAPI_CALL neverCalled() {
+    std::abort();
+}
 
 PFN_vkVoidFunction lookUp(const char* name);
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice, const char* name) { return lookUp(name); }
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance, const char* name) { return lookUp(name); }
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice, const char* name) {
+    return lookUp(name);
+}
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance, const char* name) {
+    return lookUp(name);
+}
 
 PFN_vkVoidFunction lookUp(const char* name) {
     const auto as = [](auto* function) { return reinterpret_cast<PFN_vkVoidFunction>(function); };
@@ -139,17 +131,18 @@ PFN_vkVoidFunction lookUp(const char* name) {
     } known[] = {
         {"vkGetDeviceProcAddr", as(getDeviceProcAddr)},
         {"vkGetPhysicalDeviceProperties2", as(getProperties2)},
-        {"vkGetPhysicalDeviceFeatures2", as(getFeatures2)},
         {"vkGetPhysicalDeviceMemoryProperties", as(getMemory)},
         {"vkGetPhysicalDeviceQueueFamilyProperties", as(getFamilies)},
         {"vkCreateDescriptorSetLayout", as(createSetLayout)},
         {"vkCreateComputePipelines", as(createComputePipelines)},
         {"vkCreateSampler", as(create<VkSamplerCreateInfo, VkSampler>)},
         {"vkCreatePipelineLayout", as(create<VkPipelineLayoutCreateInfo, VkPipelineLayout>)},
-        {"vkCreateShaderModule", as(create<VkShaderModuleCreateInfo, VkShaderModule>)},
+        {"vkCreateShaderModule", as(createShaderModule)},
         {"vkDestroyDescriptorSetLayout", as(destroy<VkDescriptorSetLayout>)},
         {"vkDestroyPipeline", as(destroy<VkPipeline>)},
         {"vkDestroyPipelineLayout", as(destroy<VkPipelineLayout>)},
+        {"vkCreateQueryPool", as(create<VkQueryPoolCreateInfo, VkQueryPool>)},
+        {"vkDestroyQueryPool", as(destroy<VkQueryPool>)},
         {"vkDestroySampler", as(destroy<VkSampler>)},
         {"vkDestroyShaderModule", as(destroy<VkShaderModule>)},
     };
@@ -186,7 +179,9 @@ FakeVulkan::FakeVulkan() {
                          VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT;
 }
 
-FakeVulkan::~FakeVulkan() { current = nullptr; }
+FakeVulkan::~FakeVulkan() {
+    current = nullptr;
+}
 
 ContextDesc FakeVulkan::desc() const {
     ContextDesc desc;

@@ -5,11 +5,12 @@
 #include <vulkan/vulkan_core.h>
 
 #include <cstdint>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "gnomon/tiled_shadows.h"
+#include "gnomon/gnomon.h"
 
 namespace gnomon::house {
 
@@ -30,6 +31,7 @@ public:
     VkShaderStageFlags subgroupStages = VK_SHADER_STAGE_ALL;
     VkShaderStageFlags requiredSubgroupSizeStages = VK_SHADER_STAGE_COMPUTE_BIT;
     std::uint32_t subgroupSize = 32, minSubgroupSize = 32, maxSubgroupSize = 64;
+    std::uint32_t timestampBits = 64;
     std::set<std::string> hidden;   // functions that it has not, by their whole names
     std::uint32_t failAfter = ~0u;  // so many objects are made, then making one runs out of memory
 
@@ -45,10 +47,12 @@ public:
     };
     struct Pipeline {
         VkPipelineShaderStageCreateFlags stageFlags = 0;
-        std::uint32_t requiredSubgroupSize = 0;  // 0: not asked for
-        std::vector<std::uint32_t> constants;    // values of constants 0, 1, 2 ...
+        std::uint32_t requiredSubgroupSize = 0;            // 0: not asked for
+        std::size_t spirvBytes = 0;                        // of its shader
+        std::map<std::uint32_t, std::uint32_t> constants;  // by id
     };
     std::vector<SetLayout> setLayouts;
+    std::map<VkShaderModule, std::size_t> modules;  // bytes of all that were made
     std::vector<Pipeline> pipelines;
     std::uint32_t made = 0, destroyed = 0;
     std::uint32_t callsWithoutDevice = 0;  // with a null VkDevice: a real driver crashes

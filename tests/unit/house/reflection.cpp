@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <stdexcept>
+
+#include "unit/house/accesses.h"
 
 namespace gnomon::house {
 namespace {
@@ -33,22 +36,40 @@ MemberLayout memberOf(spvc_type type, std::size_t offset) {
     return {offset, count * spvc_type_get_bit_width(type) / 8, kindOf(spvc_type_get_basetype(type))};
 }
 
+// The members of a structure that begins at `start`, with those of structures and arrays within it.
+void addMembers(const Reflector& r, spvc_type type, std::size_t start, const std::string& name,
+                std::vector<MemberLayout>& out) {
+    for (unsigned i = 0; i < spvc_type_get_num_member_types(type); ++i) {
+        unsigned offset = 0, stride = 0;
+        check(r, spvc_compiler_type_struct_member_offset(r.compiler, type, i, &offset), name);
+        const spvc_type member = spvc_compiler_get_type_handle(r.compiler, spvc_type_get_member_type(type, i));
+        std::size_t elements = 1;
+        if (spvc_type_get_num_array_dimensions(member) != 0) {
+            check(r, spvc_compiler_type_struct_member_array_stride(r.compiler, type, i, &stride), name);
+            elements = spvc_type_get_array_dimension(member, 0);
+        }
+        for (std::size_t element = 0; element < elements; ++element) {
+            const std::size_t at = start + offset + element * stride;
+            if (spvc_type_get_basetype(member) == SPVC_BASETYPE_STRUCT) {
+                addMembers(r, spvc_compiler_get_type_handle(r.compiler, spvc_type_get_base_type_id(member)), at, name,
+                           out);
+                continue;
+            }
+            MemberLayout layout = memberOf(member, at);
+            if (spvc_type_get_columns(member) > 1) {
+                unsigned column = 0;
+                check(r, spvc_compiler_type_struct_member_matrix_stride(r.compiler, type, i, &column), name);
+                layout.bytes = std::size_t(column) * spvc_type_get_columns(member);
+            }
+            out.push_back(layout);
+        }
+    }
+}
+
 std::vector<MemberLayout> membersOf(const Reflector& r, spvc_type type, const std::string& name) {
     if (spvc_type_get_basetype(type) != SPVC_BASETYPE_STRUCT) return {memberOf(type, 0)};
     std::vector<MemberLayout> out;
-    for (unsigned i = 0; i < spvc_type_get_num_member_types(type); ++i) {
-        unsigned offset = 0;
-        check(r, spvc_compiler_type_struct_member_offset(r.compiler, type, i, &offset), name);
-        const spvc_type member = spvc_compiler_get_type_handle(r.compiler, spvc_type_get_member_type(type, i));
-        MemberLayout layout = memberOf(member, offset);
-        if (spvc_type_get_num_array_dimensions(member) != 0) layout.kind = '?';
-        if (spvc_type_get_columns(member) > 1) {
-            unsigned stride = 0;
-            check(r, spvc_compiler_type_struct_member_matrix_stride(r.compiler, type, i, &stride), name);
-            layout.bytes = std::size_t(stride) * spvc_type_get_columns(member);
-        }
-        out.push_back(layout);
-    }
+    addMembers(r, type, 0, name, out);
     return out;
 }
 
@@ -71,7 +92,8 @@ std::vector<PartLayout> partsOf(const Reflector& r, spvc_type block, const std::
     return out;
 }
 
-void addResources(const Reflector& r, spvc_resources all, ShaderLayout& out) {
+void addResources(const Reflector& r, spvc_resources all, const std::map<std::uint32_t, ShaderAccess>& accesses,
+                  ShaderLayout& out) {
     const struct {
         spvc_resource_type from;
         VkDescriptorType to;
@@ -94,6 +116,10 @@ void addResources(const Reflector& r, spvc_resources all, ShaderLayout& out) {
             resource.set = spvc_compiler_get_decoration(r.compiler, list[i].id, SpvDecorationDescriptorSet);
             resource.binding = spvc_compiler_get_decoration(r.compiler, list[i].id, SpvDecorationBinding);
             resource.type = kind.to;
+            if (const auto access = accesses.find(list[i].id); access != accesses.end()) {
+                resource.read = access->second.read;
+                resource.written = access->second.written;
+            }
             const spvc_type type = spvc_compiler_get_type_handle(r.compiler, list[i].type_id);
             if (spvc_type_get_num_array_dimensions(type) != 0) resource.count = spvc_type_get_array_dimension(type, 0);
             const spvc_type base = spvc_compiler_get_type_handle(r.compiler, list[i].base_type_id);
@@ -102,15 +128,18 @@ void addResources(const Reflector& r, spvc_resources all, ShaderLayout& out) {
         }
     }
     const spvc_reflected_resource* list = nullptr;
-    check(r, spvc_resources_get_resource_list_for_type(all, SPVC_RESOURCE_TYPE_PUSH_CONSTANT, &list,
-                                                       &out.pushConstantBlocks), out.name);
+    check(r,
+          spvc_resources_get_resource_list_for_type(all, SPVC_RESOURCE_TYPE_PUSH_CONSTANT, &list,
+                                                    &out.pushConstantBlocks),
+          out.name);
 }
 
 void addEntryPoint(const Reflector& r, ShaderLayout& out) {
     out.compute = spvc_compiler_get_execution_model(r.compiler) == SpvExecutionModelGLCompute;
     if (out.compute) {
         for (unsigned i = 0; i < 3; ++i) {
-            out.workGroup[i] = spvc_compiler_get_execution_mode_argument_by_index(r.compiler, SpvExecutionModeLocalSize, i);
+            out.workGroup[i] =
+                spvc_compiler_get_execution_mode_argument_by_index(r.compiler, SpvExecutionModeLocalSize, i);
         }
     }
     const spvc_specialization_constant* constants = nullptr;
@@ -135,10 +164,12 @@ ShaderLayout reflectWords(const std::vector<std::uint32_t>& words, const std::st
     if (spvc_context_create(&r.context) != SPVC_SUCCESS) throw std::runtime_error("SPIRV-Cross does not start");
     spvc_parsed_ir ir = nullptr;
     check(r, spvc_context_parse_spirv(r.context, words.data(), words.size(), &ir), name);
-    check(r, spvc_context_create_compiler(r.context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &r.compiler), name);
+    check(r,
+          spvc_context_create_compiler(r.context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &r.compiler),
+          name);
     spvc_resources resources = nullptr;
     check(r, spvc_compiler_create_shader_resources(r.compiler, &resources), name);
-    addResources(r, resources, out);
+    addResources(r, resources, accessesOf(words, name), out);
     addEntryPoint(r, out);
     return out;
 }

@@ -10,7 +10,8 @@
 
 namespace gnomon::house {
 
-/// A member of a structure of scalars, vectors and matrices.
+/// A member of a structure of scalars, vectors and matrices. Arrays of a fixed length and structures within the
+/// structure count as the members of all their elements.
 struct MemberLayout {
     std::size_t offset = 0, bytes = 0;
     char kind = '?';  // 'f' float, 'u' unsigned, '?' anything else
@@ -29,7 +30,8 @@ struct ResourceLayout {
     std::uint32_t set = 0, binding = 0;
     VkDescriptorType type = VK_DESCRIPTOR_TYPE_MAX_ENUM;
     std::uint32_t count = 1;
-    std::vector<PartLayout> parts;  // of a block
+    std::vector<PartLayout> parts;       // of a block
+    bool read = false, written = false;  // by the shader's instructions; neither: declared and not used
 };
 
 struct ShaderLayout {

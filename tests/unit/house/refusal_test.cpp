@@ -28,7 +28,7 @@ TEST(Refusal, TheFakeIsAccepted) {
     const Result result = Context::create(vulkan.desc(), context);
     ASSERT_TRUE(result) << result.message();
     EXPECT_EQ(context->subgroupSize(), 32u);
-    EXPECT_EQ(vulkan.pipelines.size(), 6u);
+    EXPECT_EQ(context->pipelineCount(), 0u);
     EXPECT_GT(vulkan.made, vulkan.destroyed);
     context.reset();
     EXPECT_EQ(vulkan.made, vulkan.destroyed);
@@ -56,31 +56,10 @@ TEST(Refusal, BadDescriptions) {
     const std::uint32_t many[9] = {};
     desc.queueFamilies = many;
     expectRefused(vulkan, desc, Status::BadArgument, "queueFamilies");
-    for (std::uint32_t radius : {0u, 4u, ~0u}) {
-        desc = vulkan.desc();
-        desc.pcfRadius = radius;
-        expectRefused(vulkan, desc, Status::BadArgument, "pcfRadius");
-    }
-    for (PcssTaps taps : {PcssTaps{0, 8}, PcssTaps{65, 8}, PcssTaps{8, 0}, PcssTaps{8, 65}, PcssTaps{~0u, ~0u}}) {
-        desc = vulkan.desc();
-        desc.pcss = taps;
-        expectRefused(vulkan, desc, Status::BadArgument, "pcss");
-    }
-    for (std::uint32_t bits : {0u, 1u, 5u, 16u, ~0u}) {
-        desc = vulkan.desc();
-        desc.visibilityBits = bits;
-        expectRefused(vulkan, desc, Status::BadArgument, "visibilityBits");
-    }
     for (std::uint32_t atlases : {0u, 5u, ~0u}) {
         desc = vulkan.desc();
         desc.maxShadowAtlases = atlases;
         expectRefused(vulkan, desc, Status::BadArgument, "maxShadowAtlases");
-    }
-    for (std::uint32_t entries : {0u, 1025u}) {
-        desc = vulkan.desc();
-        desc.listReservation = ListReservation::Fixed;
-        desc.fixedListEntriesPerTile = entries;
-        expectRefused(vulkan, desc, Status::BadArgument, "fixedListEntriesPerTile");
     }
 }
 
@@ -163,11 +142,89 @@ TEST(Refusal, OutOfMemoryLeaksNothing) {
         ASSERT_TRUE(Context::create(vulkan.desc(), context));
         whole = vulkan.made;
     }
+    EXPECT_GT(whole, 0u);
     for (std::uint32_t count = 0; count < whole; ++count) {
         FakeVulkan vulkan;
         vulkan.failAfter = count;
         expectRefused(vulkan, vulkan.desc(), Status::OutOfMemory, "ran out of memory");
     }
+}
+
+// Likewise while pipelines are made; those that were are kept, and the rest follow when there is memory again.
+TEST(Refusal, OutOfMemoryWhilePreparing) {
+    std::uint32_t begin = 0, end = 0;
+    {
+        FakeVulkan vulkan;
+        std::unique_ptr<Context> context;
+        ASSERT_TRUE(Context::create(vulkan.desc(), context));
+        begin = vulkan.made;
+        ASSERT_TRUE(context->prepare({}));
+        end = vulkan.made;
+        EXPECT_EQ(context->pipelineCount(), 6u);
+    }
+    ASSERT_EQ(end, begin + 12);  // a module and a pipeline each
+    for (std::uint32_t count = begin; count < end; ++count) {
+        FakeVulkan vulkan;
+        std::unique_ptr<Context> context;
+        ASSERT_TRUE(Context::create(vulkan.desc(), context));
+        vulkan.failAfter = count;
+        const Result result = context->prepare({});
+        EXPECT_EQ(result.status(), Status::OutOfMemory);
+        EXPECT_THAT(result.message(), HasSubstr("ran out of memory"));
+        EXPECT_EQ(context->pipelineCount(), (count - begin) / 2);
+        vulkan.failAfter = ~0u;
+        EXPECT_TRUE(context->prepare({}));
+        EXPECT_EQ(context->pipelineCount(), 6u);
+        context.reset();
+        EXPECT_EQ(vulkan.made, vulkan.destroyed);
+    }
+}
+
+TEST(Refusal, Timelines) {
+    FakeVulkan vulkan;
+    std::unique_ptr<Context> context;
+    ASSERT_TRUE(Context::create(vulkan.desc(), context));
+    const std::uint32_t before = vulkan.made;
+    std::unique_ptr<Timeline> timeline;
+    for (const std::uint32_t frames : {0u, 5u, ~0u}) {
+        const Result result = Timeline::create(*context, {.framesInFlight = frames}, timeline);
+        EXPECT_EQ(result.status(), Status::BadArgument);
+        EXPECT_THAT(result.message(), MatchesRegex("^TimelineDesc::framesInFlight is .+ 1 to 4\\.$"));
+    }
+    for (const std::uint32_t rows : {0u, 1025u, ~0u}) {
+        const Result result = Timeline::create(*context, {.maxRows = rows}, timeline);
+        EXPECT_EQ(result.status(), Status::BadArgument);
+        EXPECT_THAT(result.message(), MatchesRegex("^TimelineDesc::maxRows is .+ 1 to 1024\\.$"));
+    }
+    EXPECT_EQ(timeline, nullptr);
+    EXPECT_EQ(vulkan.made, before);
+    for (const std::uint32_t frames : {1u, 4u}) {
+        ASSERT_TRUE(Timeline::create(*context, {.framesInFlight = frames, .maxRows = 1024}, timeline));
+        EXPECT_TRUE(timeline->records());
+    }
+    timeline.reset();
+    vulkan.failAfter = vulkan.made;
+    EXPECT_EQ(Timeline::create(*context, {}, timeline).status(), Status::OutOfMemory);
+    EXPECT_EQ(timeline, nullptr);
+    context.reset();
+    EXPECT_EQ(vulkan.made, vulkan.destroyed);
+}
+
+// A queue without timestamps: a timeline that records nothing, and calls nothing.
+TEST(Refusal, TimelinesWithoutTimestampsAreSilent) {
+    FakeVulkan vulkan;
+    vulkan.timestampBits = 0;
+    std::unique_ptr<Context> context;
+    ASSERT_TRUE(Context::create(vulkan.desc(), context));
+    std::unique_ptr<Timeline> timeline;
+    ASSERT_TRUE(Timeline::create(*context, {}, timeline));
+    EXPECT_FALSE(timeline->records());
+    timeline->beginFrame(VK_NULL_HANDLE, 1);
+    const Timeline::Row row = timeline->begin(VK_NULL_HANDLE, "row", Phase::Host, RowKind::Compute);
+    EXPECT_EQ(row, Timeline::kNone);
+    timeline->end(VK_NULL_HANDLE, row);
+    EXPECT_TRUE(timeline->rows(1).empty());
+    EXPECT_EQ(timeline->lostRows(1), 0u);
 }
 
 }  // namespace

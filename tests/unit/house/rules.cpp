@@ -22,32 +22,45 @@ constexpr const char* kRooms[] = {"include",  "src", "visualize", "inspect", "re
 constexpr std::string_view kTextEndings[] = {".h",  ".cpp",   ".glsl", ".comp", ".vert", ".frag",
                                              ".md", ".cmake", ".txt",  ".sh",   ".json"};
 
+// Public headers that know no Vulkan: formats and settings, for rooms without a device.
+constexpr const char* kPlainHeaders[] = {"include/gnomon/scene.h", "include/gnomon/settings.h",
+                                         "include/gnomon/prepare.h", "include/gnomon/result.h"};
+
 // What a room may see: rooms of the project, and names outside it.
 struct Allowed {
     std::vector<std::string> rooms;
     bool vulkan = true;
     bool thirdParty = false;
+    bool plainHeaders = false;  // of "include", those that know no Vulkan
 };
 
 const std::map<std::string, Allowed>& cppRules() {
+    // All of the library, for what stands on it.
+    static const std::vector<std::string> library = {"src",        "src/core",      "src/prepare",
+                                                     "src/vulkan", "gpu_interface", "include"};
+    const auto and_ = [](std::vector<std::string> rooms) {
+        rooms.insert(rooms.end(), library.begin(), library.end());
+        return rooms;
+    };
     static const std::map<std::string, Allowed> rules = {
         {"include", {{"include"}}},
         {"gpu_interface", {{"gpu_interface"}, false}},
-        {"src", {{"src", "gpu_interface", "include"}}},
-        {"reference", {{"reference", "gpu_interface"}, false}},
-        {"visualize", {{"visualize", "src", "gpu_interface", "include"}}},
-        {"scene", {{"scene", "include"}, false, true}},
-        {"truth", {{"truth", "scene", "include"}, false, true}},
+        // Techniques; core composes them, and vulkan serves them.
+        {"src", {{"src", "src/vulkan", "gpu_interface", "include"}}},
+        {"src/core", {and_({})}},
+        {"src/prepare", {{"src/prepare", "gpu_interface"}, false, false, true}},
+        {"src/vulkan", {{"src/vulkan", "gpu_interface", "include"}}},
+        {"reference", {{"reference", "gpu_interface"}, false, false, true}},
+        {"visualize", {and_({"visualize"})}},
+        {"inspect", {and_({"inspect"})}},
+        {"scene", {{"scene"}, false, true, true}},
+        {"truth", {{"truth", "scene"}, false, true, true}},
         {"picture", {{"picture"}, false, true}},
-        {"renderer", {{"renderer", "scene", "picture", "src", "gpu_interface", "include"}, true, true}},
+        {"renderer", {and_({"renderer", "scene", "picture"}), true, true}},
         {"app",
-         {{"app", "renderer", "scene", "truth", "picture", "visualize", "reference", "src", "gpu_interface", "include"},
-          true,
-          true}},
+         {and_({"app", "renderer", "visualize", "inspect", "scene", "truth", "picture", "reference"}), true, true}},
         {"app/view",
-         {{"app/view", "app", "renderer", "scene", "truth", "picture", "visualize", "reference", "src", "gpu_interface",
-           "include"},
-          true,
+         {and_({"app/view", "app", "renderer", "visualize", "inspect", "scene", "truth", "picture", "reference"}), true,
           true}},
         {"examples", {{"examples", "include"}}},
     };
@@ -55,14 +68,21 @@ const std::map<std::string, Allowed>& cppRules() {
 }
 
 const std::map<std::string, Allowed>& shaderRules() {
+    static const std::vector<std::string> library = {"src", "src/shading", "src/vulkan", "gpu_interface"};
+    const auto and_ = [](std::vector<std::string> rooms) {
+        rooms.insert(rooms.end(), library.begin(), library.end());
+        return rooms;
+    };
     static const std::map<std::string, Allowed> rules = {
         {"gpu_interface", {{"gpu_interface"}}},
-        {"src", {{"src", "gpu_interface"}}},
-        {"visualize", {{"visualize", "src", "gpu_interface"}}},
-        {"renderer", {{"renderer", "src", "gpu_interface"}}},
-        {"app", {{"app", "renderer", "visualize", "src", "gpu_interface"}}},
-        {"app/view", {{"app/view", "app", "renderer", "visualize", "src", "gpu_interface"}}},
-        {"examples", {{"examples", "src", "gpu_interface"}}},
+        {"src", {library}},
+        {"src/shading", {library}},
+        {"src/vulkan", {{"src/vulkan", "gpu_interface"}}},
+        {"visualize", {and_({"visualize"})}},
+        {"renderer", {and_({"renderer"})}},
+        {"app", {and_({"app", "renderer", "visualize"})}},
+        {"app/view", {and_({"app/view", "app", "renderer", "visualize"})}},
+        {"examples", {and_({"examples"})}},
     };
     return rules;
 }
@@ -196,22 +216,27 @@ bool isGeneratedShader(const Include& include) {
     return include.form == Include::Form::Quoted && endsWith(include.name, ".spv.h");
 }
 
+bool inLibrary(const std::string& room) {
+    return room == "src" || room.starts_with("src/");
+}
+
 // Why `room` may not include this, or nothing.
 std::string refusal(const std::string& room, const Allowed& allowed, const Include& include, const std::string& target,
                     bool shader) {
     if (include.form == Include::Form::Macro) return "a computed include cannot be checked";
-    if (shader && room == "src" && include.name == "gnomon_host_provider.glsl") return "";  // the host's own file
+    if (shader && inLibrary(room) && include.name == "gnomon_host_provider.glsl") return "";  // the host's own file
     if (!target.empty()) {
         const std::string other = roomOf(target);
-        const bool open =
-            std::ranges::find(allowed.rooms, other) != allowed.rooms.end() ||
-            (room == "reference" && (target == "include/gnomon/scene.h" || target == "include/gnomon/result.h"));
-        return open ? "" : "'" + room + "' must not see '" + (other.empty() ? target : other) + "'";
+        const bool plain = std::ranges::find(kPlainHeaders, target) != std::end(kPlainHeaders);
+        if ((allowed.plainHeaders && plain) || std::ranges::find(allowed.rooms, other) != allowed.rooms.end())
+            return "";
+        const bool named = other.empty() || (allowed.plainHeaders && other == "include");
+        return "'" + room + "' must not see '" + (named ? target : other) + "'";
     }
     if (shader) return "no such file in the project";
     if (isGui(include.name) && room != "app/view") return "GUI code lives in app/view alone";
     if (isGeneratedShader(include)) {
-        return room == "include" || room == "reference" ? "'" + room + "' must not see shaders" : "";
+        return allowed.vulkan && room != "include" ? "" : "'" + room + "' must not see shaders";
     }
     if (isStandard(include.name) && include.form == Include::Form::Angled) return "";
     if (include.name.starts_with("vulkan/")) return allowed.vulkan ? "" : "'" + room + "' must not see Vulkan";
@@ -277,8 +302,9 @@ std::vector<Include> includesOf(std::string_view text) {
 }
 
 std::string roomOf(std::string_view path) {
-    for (const std::string_view inner : {"src/gpu_interface/", "app/view/"}) {
-        if (path.starts_with(inner)) return inner == "app/view/" ? "app/view" : "gpu_interface";
+    if (path.starts_with("src/gpu_interface/")) return "gpu_interface";
+    for (const std::string_view inner : {"src/core", "src/prepare", "src/shading", "src/vulkan", "app/view"}) {
+        if (path.starts_with(inner) && path.substr(inner.size()).starts_with('/')) return std::string(inner);
     }
     const std::size_t slash = path.find('/');
     return slash == std::string_view::npos ? std::string() : std::string(path.substr(0, slash));
@@ -297,6 +323,8 @@ Violations checkIncludes(const TextFile& file, const std::set<std::string>& path
     const auto& rules = shader ? shaderRules() : cppRules();
     const auto rule = rules.find(room);
     Violations out;
+    if (room == "src/shading" && !endsWith(file.path, ".glsl"))
+        out.push_back(at(file, 1) + "src/shading holds shader includes for hosts, and nothing else.");
     for (const Include& include : includesOf(file.text)) {
         if (rule == rules.end()) {
             if (isGui(include.name)) out.push_back(at(file, include.line) + "GUI code lives in app/view alone.");
@@ -337,6 +365,13 @@ Violations checkText(const TextFile& file) {
     return out;
 }
 
+Violations checkGuard(const TextFile& file) {
+    if (!endsWith(file.path, ".h") && !endsWith(file.path, ".glsl")) return {};
+    static const std::regex pattern(R"((^|\n)(#pragma once|#ifndef (GNOMON_\w+)\n#define \3)\n)");
+    if (std::regex_search(file.text, pattern)) return {};
+    return {at(file, 1) + "does not guard itself against being included twice."};
+}
+
 Violations checkProject(const std::vector<TextFile>& files) {
     std::set<std::string> paths;
     for (const TextFile& file : files) paths.insert(file.path);
@@ -344,6 +379,7 @@ Violations checkProject(const std::vector<TextFile>& files) {
     for (const TextFile& file : files) {
         Violations found = checkSize(file);
         std::ranges::move(checkText(file), std::back_inserter(found));
+        std::ranges::move(checkGuard(file), std::back_inserter(found));
         if (isCpp(file.path) || isShader(file.path))
             std::ranges::move(checkIncludes(file, paths), std::back_inserter(found));
         std::ranges::move(found, std::back_inserter(out));

@@ -43,6 +43,8 @@ bool isShader(std::string_view path);
 Violations checkIncludes(const TextFile& file, const std::set<std::string>& paths);
 Violations checkSize(const TextFile& file);
 Violations checkText(const TextFile& file);
+/// Headers and shader includes may be included twice.
+Violations checkGuard(const TextFile& file);
 
 /// All rules over all files.
 Violations checkProject(const std::vector<TextFile>& files);

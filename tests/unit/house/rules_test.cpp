@@ -35,7 +35,7 @@ TEST(HouseRules, TreeHolds) {
 
 TEST(HouseRules, TreeIsReadWhole) {
     const std::set<std::string> paths = projectPaths();
-    for (const char* path : {"include/gnomon/scene.h", "src/context.cpp", "src/gpu_interface/numbers.h",
+    for (const char* path : {"include/gnomon/scene.h", "src/core/context.cpp", "src/gpu_interface/numbers.h",
                              "src/generate_shadows/generate_shadows.comp", "reference/prepare.cpp",
                              "renderer/lighting/lighting.comp", "app/main.cpp", "CMakeLists.txt"}) {
         EXPECT_TRUE(paths.contains(path)) << path;
@@ -73,73 +73,152 @@ constexpr Planted kPlanted[] = {
     {"include/gnomon/new.h", "#include <vulkan/vulkan_core.h>", true},
     {"include/gnomon/new.h", "#include \"gnomon/result.h\"", true},
     {"include/gnomon/new.h", "#include \"gpu_interface/numbers.h\"", false},
-    {"include/gnomon/new.h", "#include \"../../src/context.h\"", false},
+    {"include/gnomon/new.h", "#include \"vulkan/pass.h\"", false},
+    {"include/gnomon/new.h", "#include \"../../src/core/context.h\"", false},
+    {"include/gnomon/new.h", "#include \"generate_shadows.spv.h\"", false},
     {"include/gnomon/new.h", "#include <glm/glm.hpp>", false},
+
+    // gpu_interface stands alone.
     {"src/gpu_interface/new.h", "#include \"gpu_interface/numbers.h\"", true},
     {"src/gpu_interface/new.h", "#include \"numbers.h\"", true},
-    {"src/gpu_interface/new.h", "#include \"context.h\"", false},
+    {"src/gpu_interface/new.h", "#include \"core/context.h\"", false},
+    {"src/gpu_interface/new.h", "#include \"vulkan/pass.h\"", false},
     {"src/gpu_interface/new.h", "#include \"gnomon/scene.h\"", false},
     {"src/gpu_interface/new.h", "#include <vulkan/vulkan_core.h>", false},
-    {"src/new.cpp", "#include \"gnomon/scene.h\"", true},
-    {"src/new.cpp", "#include \"generate_shadows.spv.h\"", true},
-    {"src/new.cpp", "#  include <unistd.h>", false},
-    {"src/new.cpp", "#include <sys/mman.h>", false},
-    {"src/new.cpp", "#include <math.h>", false},
-    {"src/new.cpp", "#include <volk.h>", false},
-    {"src/new.cpp", "#include <glm/glm.hpp>", false},
-    {"src/new.cpp", "#include \"renderer/camera.h\"", false},
-    {"src/new.cpp", "#include \"../reference/prepare.h\"", false},
-    {"src/new.cpp", "#include \"reference/prepare.h\"", false},
-    {"src/new.cpp", "#include SOME_MACRO", false},
+    {"src/gpu_interface/new.glsl", "#include \"gpu_interface/packing.h\"", true},
+    {"src/gpu_interface/new.glsl", "#include \"shading/frame.glsl\"", false},
+    {"src/gpu_interface/new.glsl", "#include \"visibility/pcf.glsl\"", false},
+
+    // Techniques see each other and what serves them, not who composes them.
+    {"src/closeups/new.cpp", "#include \"gnomon/scene.h\"", true},
+    {"src/closeups/new.cpp", "#include \"gnomon/view.h\"", true},
+    {"src/closeups/new.cpp", "#include \"vulkan/pass.h\"", true},
+    {"src/closeups/new.cpp", "#include \"shadow_bounds/cells.h\"", true},
+    {"src/closeups/new.cpp", "#include \"generate_shadows.spv.h\"", true},
+    {"src/closeups/new.cpp", "#include \"core/view.h\"", false},
+    {"src/closeups/new.cpp", "#include \"../core/passes.h\"", false},
+    {"src/closeups/new.cpp", "#include \"src/core/pipelines.h\"", false},
+    {"src/closeups/new.cpp", "#  include <unistd.h>", false},
+    {"src/closeups/new.cpp", "#include <sys/mman.h>", false},
+    {"src/closeups/new.cpp", "#include <math.h>", false},
+    {"src/closeups/new.cpp", "#include <volk.h>", false},
+    {"src/closeups/new.cpp", "#include <glm/glm.hpp>", false},
+    {"src/closeups/new.cpp", "#include \"renderer/gpu/device.h\"", false},
+    {"src/closeups/new.cpp", "#include \"scene/scene.h\"", false},
+    {"src/closeups/new.cpp", "#include \"../../reference/prepare.h\"", false},
+    {"src/closeups/new.cpp", "#include \"reference/prepare.h\"", false},
+    {"src/closeups/new.cpp", "#include SOME_MACRO", false},
+    {"src/core/new.cpp", "#include \"core/view.h\"", true},
+    {"src/core/new.cpp", "#include \"generate_shadows/generate_shadows.h\"", true},
+    {"src/core/new.cpp", "#include \"prepare/camera.h\"", true},
+    {"src/core/new.cpp", "#include \"vulkan/recorder.h\"", true},
+    {"src/core/new.cpp", "#include \"renderer/renderer.h\"", false},
+    {"src/vulkan/new.cpp", "#include \"vulkan/resources.h\"", true},
+    {"src/vulkan/new.cpp", "#include \"gpu_interface/numbers.h\"", true},
+    {"src/vulkan/new.cpp", "#include \"core/context.h\"", false},
+    {"src/vulkan/new.cpp", "#include \"generate_shadows/generate_shadows.h\"", false},
+    {"src/vulkan/new.glsl", "#include \"shading/frame.glsl\"", false},
+    {"src/prepare/new.cpp", "#include \"prepare/camera.h\"", true},
+    {"src/prepare/new.cpp", "#include \"gnomon/prepare.h\"", true},
+    {"src/prepare/new.cpp", "#include \"gnomon/view.h\"", false},
+    {"src/prepare/new.cpp", "#include \"vulkan/resources.h\"", false},
+    {"src/prepare/new.cpp", "#include \"core/view.h\"", false},
+    {"src/prepare/new.cpp", "#include <vulkan/vulkan_core.h>", false},
     {"src/generate_shadows/new.glsl", "#include \"gnomon_host_provider.glsl\"", true},
-    {"src/generate_shadows/new.glsl", "#include \"hard.glsl\"", true},
+    {"src/generate_shadows/new.glsl", "#include \"visibility/hard.glsl\"", true},
+    {"src/generate_shadows/new.comp", "#include \"shading/frame.glsl\"", true},
+    {"src/generate_shadows/new.comp", "#include \"vulkan/work_group.glsl\"", true},
     {"src/generate_shadows/new.glsl", "#include \"renderer/lighting/shade.glsl\"", false},
     {"src/generate_shadows/new.glsl", "#include \"no/such/file.glsl\"", false},
-    {"src/gpu_interface/new.glsl", "#include \"shading/frame.glsl\"", false},
+    {"src/shading/new.glsl", "#include \"visibility/visibility.glsl\"", true},
+    {"src/shading/new.glsl", "#include \"renderer/lighting/shade.glsl\"", false},
+
+    // The oracle sees formats, and of the public headers those that know no Vulkan.
     {"reference/new.cpp", "#include \"gpu_interface/packing.h\"", true},
     {"reference/new.cpp", "#include \"gnomon/scene.h\"", true},
-    {"reference/new.cpp", "#include \"gnomon/result.h\"", true},
-    {"reference/new.cpp", "#include \"gnomon/prepare.h\"", false},
+    {"reference/new.cpp", "#include \"gnomon/settings.h\"", true},
+    {"reference/new.cpp", "#include \"gnomon/prepare.h\"", true},
+    {"reference/new.cpp", "#include \"gnomon/view.h\"", false},
+    {"reference/new.cpp", "#include \"gnomon/context.h\"", false},
+    {"reference/new.cpp", "#include \"gnomon/timeline.h\"", false},
+    {"reference/new.cpp", "#include \"gnomon/gnomon.h\"", false},
     {"reference/new.cpp", "#include \"prepare/camera.h\"", false},
     {"reference/new.cpp", "#include \"src/prepare/camera.h\"", false},
-    {"reference/new.cpp", "#include \"renderer/camera.h\"", false},
+    {"reference/new.cpp", "#include \"shadow_bounds/cells.h\"", false},
+    {"reference/new.cpp", "#include \"core/settings.h\"", false},
+    {"reference/new.cpp", "#include \"generate_shadows.spv.h\"", false},
+    {"reference/new.cpp", "#include \"renderer/renderer.h\"", false},
+    {"reference/new.cpp", "#include \"scene/scene.h\"", false},
     {"reference/new.cpp", "#include <vulkan/vulkan.h>", false},
     {"reference/new.cpp", "#include <glm/glm.hpp>", false},
-    {"visualize/new.cpp", "#include \"context.h\"", true},
-    {"visualize/new.cpp", "#include \"renderer/camera.h\"", false},
-    {"visualize/new.cpp", "#include <glm/glm.hpp>", false},
+
+    // Scene, truth and picture know no Vulkan.
     {"scene/new.cpp", "#include <glm/glm.hpp>", true},
     {"scene/new.cpp", "#include \"gnomon/result.h\"", true},
+    {"scene/new.cpp", "#include \"gnomon/settings.h\"", true},
+    {"scene/new.cpp", "#include \"gnomon/view.h\"", false},
+    {"scene/new.cpp", "#include \"gpu_interface/numbers.h\"", false},
+    {"scene/new.cpp", "#include \"renderer/gpu/device.h\"", false},
     {"scene/new.cpp", "#include <vulkan/vulkan.h>", false},
-    {"scene/builtin/new.cpp", "#include \"renderer/camera.h\"", false},
+    {"scene/builtin/new.cpp", "#include \"scene/scene.h\"", true},
+    {"scene/builtin/new.cpp", "#include \"renderer/renderer.h\"", false},
     {"truth/new.cpp", "#include \"scene/scene.h\"", true},
-    {"truth/new.cpp", "#include \"renderer/camera.h\"", false},
+    {"truth/new.cpp", "#include \"gnomon/scene.h\"", true},
+    {"truth/new.cpp", "#include \"gnomon/context.h\"", false},
+    {"truth/new.cpp", "#include \"reference/prepare.h\"", false},
+    {"truth/new.cpp", "#include \"renderer/renderer.h\"", false},
     {"truth/new.cpp", "#include <vulkan/vulkan.h>", false},
     {"picture/new.cpp", "#include <tinyexr.h>", true},
     {"picture/new.cpp", "#include \"scene/scene.h\"", false},
-    {"picture/new.cpp", "#include \"renderer/camera.h\"", false},
+    {"picture/new.cpp", "#include \"gnomon/scene.h\"", false},
+    {"picture/new.cpp", "#include \"renderer/renderer.h\"", false},
+    {"picture/new.cpp", "#include <vulkan/vulkan.h>", false},
+
+    // What stands on the library, and what stands on that.
+    {"visualize/new.cpp", "#include \"core/context.h\"", true},
+    {"visualize/new.cpp", "#include \"renderer/renderer.h\"", false},
+    {"visualize/new.cpp", "#include \"scene/scene.h\"", false},
+    {"visualize/new.cpp", "#include <glm/glm.hpp>", false},
+    {"visualize/new.comp", "#include \"shading/tile_lights.glsl\"", true},
+    {"inspect/new.cpp", "#include \"gpu_interface/packing.h\"", true},
+    {"inspect/new.cpp", "#include \"gnomon/view.h\"", true},
+    {"inspect/new.cpp", "#include \"renderer/renderer.h\"", false},
+    {"inspect/new.cpp", "#include \"app/session.h\"", false},
+    {"inspect/new.cpp", "#include \"reference/prepare.h\"", false},
     {"renderer/new.cpp", "#include \"scene/scene.h\"", true},
-    {"renderer/new.cpp", "#include \"truth/figures.h\"", false},
-    {"renderer/new.cpp", "#include <glm/glm.hpp>", true},
     {"renderer/new.cpp", "#include \"gnomon/gnomon.h\"", true},
+    {"renderer/new.cpp", "#include <glm/glm.hpp>", true},
+    {"renderer/new.cpp", "#include \"truth/figures.h\"", false},
     {"renderer/new.cpp", "#include \"app/session.h\"", false},
     {"renderer/new.cpp", "#include \"reference/prepare.h\"", false},
     {"renderer/new.cpp", "#include <GLFW/glfw3.h>", false},
     {"renderer/lighting/new.glsl", "#include \"shading/frame.glsl\"", true},
-    {"app/new.cpp", "#include \"renderer/camera.h\"", true},
+    {"app/new.cpp", "#include \"renderer/renderer.h\"", true},
+    {"app/new.cpp", "#include \"truth/figures.h\"", true},
+    {"app/new.cpp", "#include \"tests/unit/house/rules.h\"", false},
     {"app/new.cpp", "#include <imgui.h>", false},
     {"app/new.cpp", "#include <SDL2/SDL.h>", false},
     {"app/view/new.cpp", "#include <imgui.h>", true},
+    {"app/view/new.cpp", "#include \"app/session.h\"", true},
     {"examples/minimal_host/new.cpp", "#include \"gnomon/gnomon.h\"", true},
     {"examples/minimal_host/new.cpp", "#include <vulkan/vulkan.h>", true},
-    {"examples/minimal_host/new.cpp", "#include \"renderer/camera.h\"", false},
+    {"examples/minimal_host/new.cpp", "#include \"renderer/renderer.h\"", false},
+    {"examples/minimal_host/new.cpp", "#include \"core/context.h\"", false},
     {"examples/minimal_host/new.cpp", "#include \"gpu_interface/numbers.h\"", false},
     {"examples/minimal_host/new.cpp", "#include <glm/glm.hpp>", false},
     {"examples/minimal_host/new.comp", "#include \"shading/tile_lights.glsl\"", true},
     {"tests/unit/new.cpp", "#include <GLFW/glfw3.h>", false},
-    {"tests/unit/new.cpp", "#include \"src/context.h\"", true},
+    {"tests/unit/new.cpp", "#include \"src/core/context.h\"", true},
 };
 INSTANTIATE_TEST_SUITE_P(Planted, HouseIncludes, ::testing::ValuesIn(kPlanted));
+
+TEST(HouseRules, ShadingHoldsIncludesAlone) {
+    EXPECT_TRUE(checkIncludes({"src/shading/new.glsl", "// Text.\n"}, projectPaths()).empty());
+    for (const char* path : {"src/shading/new.comp", "src/shading/new.cpp", "src/shading/new.h"}) {
+        EXPECT_EQ(checkIncludes({path, "// Text.\n"}, projectPaths()),
+                  Violations{std::string(path) + ":1: src/shading holds shader includes for hosts, and nothing else."});
+    }
+}
 
 TEST(HouseRules, IncludesAreRead) {
     const auto found =
@@ -166,6 +245,16 @@ TEST(HouseRules, SizesAreSeen) {
     EXPECT_TRUE(checkSize({"docs/a.md", lines(5000)}).empty());
 }
 
+TEST(HouseRules, GuardsAreSeen) {
+    EXPECT_TRUE(checkGuard({"src/a.h", "// Text.\n#pragma once\n"}).empty());
+    EXPECT_TRUE(checkGuard({"src/a.glsl", "#ifndef GNOMON_A_GLSL\n#define GNOMON_A_GLSL\n#endif\n"}).empty());
+    EXPECT_EQ(checkGuard({"src/a.glsl", "// #pragma once\n"}).size(), 1u);
+    EXPECT_EQ(checkGuard({"src/a.glsl", "#ifndef GNOMON_A_GLSL\n#define GNOMON_B_GLSL\n#endif\n"}).size(), 1u);
+    EXPECT_EQ(checkGuard({"src/a.h", ""}).size(), 1u);
+    EXPECT_TRUE(checkGuard({"src/a.cpp", ""}).empty());
+    EXPECT_TRUE(checkGuard({"src/a.comp", ""}).empty());
+}
+
 TEST(HouseRules, WordsAndTabsAreSeen) {
     EXPECT_EQ(checkText({"src/a.cpp", "int a;\n\tint b;\n"}), Violations{"src/a.cpp:2: has a tab."});
     EXPECT_TRUE(checkText({"tests/data.txt", "a\tb\n"}).empty());
@@ -185,12 +274,12 @@ TEST(HouseRules, PlantedIncludeInACopyIsFound) {
         std::ofstream(copy / file.path, std::ios::binary) << file.text;
     }
     const Violations before = checkProject(readProject(copy));
-    std::ofstream(copy / "src/view.cpp", std::ios::app) << "#include \"renderer/renderer.h\"\n";
+    std::ofstream(copy / "src/core/view.cpp", std::ios::app) << "#include \"renderer/renderer.h\"\n";
     const Violations after = checkProject(readProject(copy));
     fs::remove_all(copy);
     EXPECT_EQ(before, checkProject(project()));
     ASSERT_EQ(after.size(), before.size() + 1);
-    EXPECT_THAT(joined(after), HasSubstr("includes 'renderer/renderer.h': 'src' must not see 'renderer'."));
+    EXPECT_THAT(joined(after), HasSubstr("includes 'renderer/renderer.h': 'src/core' must not see 'renderer'."));
 }
 
 }  // namespace

@@ -20,8 +20,8 @@
 // Every decision that float errors could turn (a comparison, a texel, a face, a cascade, a blocker, c <= 0) is taken
 // both ways, and the interval holds all outcomes.
 //
-// Limits: no face normals, or a filter of the host's own: every value is acceptable. A pixel whose projected position is
-// uncertain by more than two texels (at the light itself) likewise.
+// Limits: no face normals, or a filter of the host's own: every value is acceptable. A pixel whose projected position
+// is uncertain by more than two texels (at the light itself) likewise.
 
 #include <array>
 #include <cstdint>

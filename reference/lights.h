@@ -29,8 +29,8 @@ struct LightModel {
     Vec3 position;             ///< origin-relative metres
     Vec3 direction{0, 0, -1};  ///< unit, from the light into the scene
     double rangeMetres = kInfinity;
-    double outerAngle = kPi;  ///< spots: half-angle of the cone, radians
-    double sourceRadius = 0;  ///< metres; directional lights: tangent of the angular radius
+    double outerAngle = kPi;   ///< spots: half-angle of the cone, radians
+    double sourceRadius = 0;   ///< metres; directional lights: tangent of the angular radius
     bool wantsShadow = false;  ///< Light::casts
     bool casts = false;        ///< it wants to, and has shadow views
     Filter filter = Filter::Pcss;

@@ -53,8 +53,9 @@ void checkDepths(Findings& findings, std::size_t i, const LightModel& light, con
     const double centre = viewDepth(camera, light.position), slack = depthSlack(light, camera);
     const double nearest = std::max(0.0, centre - reachAlong(light, -camera.forward));
     const double farthest = centre + reachAlong(light, camera.forward);
-    const double rounding = 4 * kFloatRoundoff * (std::abs(centre) + light.rangeMetres + sumOfMagnitudes(camera.eye) +
-                                                  sumOfMagnitudes(light.position));
+    const double rounding =
+        4 * kFloatRoundoff *
+        (std::abs(centre) + light.rangeMetres + sumOfMagnitudes(camera.eye) + sumOfMagnitudes(light.position));
     if (!(entry.nearestMetres <= nearest + rounding && entry.nearestMetres >= nearest - slack))
         findings.add("light %zu reaches from a depth of %g instead of %g", i, entry.nearestMetres, nearest);
     if (!(entry.farthestMetres >= farthest - rounding && entry.farthestMetres <= farthest + slack))
@@ -128,8 +129,8 @@ Findings checkOnScreen(const std::vector<LightModel>& lights, const CameraModel&
         if (entry.type != light.type) findings.add("light %zu is of type %d", i, int(entry.type));
         if (entry.filter != light.filter || entry.pcssPreset != light.pcssPreset)
             findings.add("light %zu has filter %d and preset %u", i, int(entry.filter), entry.pcssPreset);
-        const bool closeToCall = light.wantsShadow && light.type != LightType::Directional &&
-                                 light.shadowFade < 1e-4 && light.shadowFade > 0;
+        const bool closeToCall = light.wantsShadow && light.type != LightType::Directional && light.shadowFade < 1e-4 &&
+                                 light.shadowFade > 0;
         const bool casts = light.wantsShadow && (light.type == LightType::Directional || light.shadowFade > 0);
         if (entry.casts != casts && !closeToCall)
             findings.add("light %zu %s shadow views at shadow fade %g", i, entry.casts ? "wants" : "wants no",

@@ -26,8 +26,8 @@ struct Ball {
 /// The smallest one around all that a light reaches. Not of directional lights.
 Ball reachOf(const LightModel& light);
 
-/// Every entry against its light; `lights` in the order of the answer. `masks`: the tile light masks, `tilesX` entries in
-/// a row; no tiles where none were written.
+/// Every entry against its light; `lights` in the order of the answer. `masks`: the tile light masks, `tilesX` entries
+/// in a row; no tiles where none were written.
 Findings checkOnScreen(const std::vector<LightModel>& lights, const CameraModel& camera,
                        std::span<const LightOnScreen> answer, std::span<const std::uint32_t> masks = {},
                        std::uint32_t tilesX = 0, std::uint32_t tilesY = 0);

@@ -65,11 +65,11 @@ struct LightSetup {
     double spotShare = 0.5;
     double directionalShare = 0.02;
     double maxRangeMetres = 6;
-    double spreadMetres = 14;      ///< half the side of the cube, around the eye and the room, that holds them
-    double maxOuterAngle = 1.2;    ///< radians
-    double fadingShare = 0.2;      ///< with distance fades that matter
-    std::uint32_t suns = 0;        ///< of `count`, the last ones: directional lights that cast
-    double maxSourceRadius = 0.1;  ///< metres; suns: a tenth of that in radians
+    double spreadMetres = 14;               ///< half the side of the cube, around the eye and the room, that holds them
+    double maxOuterAngle = 1.2;             ///< radians
+    double fadingShare = 0.2;               ///< with distance fades that matter
+    std::uint32_t suns = 0;                 ///< of `count`, the last ones: directional lights that cast
+    double maxSourceRadius = 0.1;           ///< metres; suns: a tenth of that in radians
     FilterSet filters = only(Filter::Pcf);  ///< the lights take turns
     std::uint32_t pcssPresets = 1;          ///< likewise
 };

@@ -154,10 +154,9 @@ TestShadows buildShadows(const Shapes& shapes, std::span<const Light> lights, co
         if (!light.casts) continue;
         const double range = light.rangeMetres > 0 ? light.rangeMetres : std::sqrt(light.intensity / rangeCutoffLux);
         const bool reversed = setup.reversed != flip;
-        const std::vector<ShadowView> views =
-            light.type == LightType::Directional
-                ? cascadesOf(light, result.lightViews[i].count, setup, reversed)
-                : viewsOf(light, setup, reversed, range);
+        const std::vector<ShadowView> views = light.type == LightType::Directional
+                                                  ? cascadesOf(light, result.lightViews[i].count, setup, reversed)
+                                                  : viewsOf(light, setup, reversed, range);
         result.views.insert(result.views.end(), views.begin(), views.end());
         flip = setup.mixDepthKinds && !flip;
     }

@@ -25,7 +25,7 @@ struct ShadowSetup {
     bool mixDepthKinds = false;  ///< every other light uses the other kind of depth
     bool infiniteFar = true;     ///< else far is a little beyond the light's range
     double nearMetres = 0.05;
-    double borderTexels = 2;  ///< by which point light faces reach beyond 90 degrees
+    double borderTexels = 2;     ///< by which point light faces reach beyond 90 degrees
     std::uint32_t cascades = 0;  ///< of a directional light; 0: 1 to 4, by the light's index
     Vec3 cascadeCentre{0, 1, 0};
     double cascadeHalfExtentMetres = 1.5;  ///< of the first cascade

@@ -79,9 +79,8 @@ void checkAnswer(const std::vector<LightModel>& all, const CameraModel& camera, 
     const std::vector<LightModel> lights = orderLights(all, p.answer.visible);
     expectNone(checkVisibleLights(all, lights, camera).findings, "answer");
     expectNone(checkReport(all, camera, p.answer), "report");
-    expectNone(
-        checkOnScreen(lights, camera, p.answer.visible, p.masks, p.frame.maskTileColumns, p.frame.maskTileRows),
-        "on screen");
+    expectNone(checkOnScreen(lights, camera, p.answer.visible, p.masks, p.frame.maskTileColumns, p.frame.maskTileRows),
+               "on screen");
     ASSERT_EQ(p.lights.size(), p.answer.visible.size());
     std::size_t casting = 0;
     for (std::size_t i = 0; i < p.lights.size(); ++i) {
@@ -262,10 +261,10 @@ TEST(Phase1, WrongAnswersAreFound) {
         return checkVisibleLights(all, orderLights(all, entries), camera).findings.errors;
     };
     EXPECT_EQ(orderErrors([](auto&) {}), 0u);
-    EXPECT_GT(orderErrors([](auto& e) { std::swap(e[0], e.back()); }), 0u);       // a sun last
+    EXPECT_GT(orderErrors([](auto& e) { std::swap(e[0], e.back()); }), 0u);  // a sun last
     EXPECT_GT(orderErrors([](auto& e) { std::reverse(e.begin() + 2, e.end()); }), 0u);
-    EXPECT_GT(orderErrors([](auto& e) { e.erase(e.begin()); }), 0u);              // a sun is missing
-    EXPECT_GT(orderErrors([](auto& e) { e[3] = e[2]; }), 0u);                     // one twice, one missing
+    EXPECT_GT(orderErrors([](auto& e) { e.erase(e.begin()); }), 0u);  // a sun is missing
+    EXPECT_GT(orderErrors([](auto& e) { e[3] = e[2]; }), 0u);         // one twice, one missing
 }
 
 }  // namespace

@@ -230,7 +230,9 @@ Result View::State::resize(const ViewDesc& to) {
     prepareDesc.maxHeightPx = to.maxHeightPx;
     if (prepare == nullptr) {
         if (Result made = Prepare::create(prepareDesc, prepare); !made) return made;
-    } else if (to.maxWidthPx != desc.maxWidthPx || to.maxHeightPx != desc.maxHeightPx) {
+    } else if (to.maxWidthPx != desc.maxWidthPx || to.maxHeightPx != desc.maxHeightPx ||
+               to.prepare.rangeCutoffLux != desc.prepare.rangeCutoffLux ||
+               to.prepare.keepFactor != desc.prepare.keepFactor) {
         if (Result made = prepare->resize(prepareDesc); !made) return made;
         isPrepared = false;
     }
@@ -393,6 +395,7 @@ VkDeviceSize View::evaluateCommandOffset() const noexcept {
 VkBuffer View::buffer(const char* name) const noexcept {
     for (std::uint32_t i = 0; i < kViewBufferCount; ++i) {
         if (std::strcmp(viewBuffers()[i].name, name) != 0) continue;
+        if (viewBuffers()[i].kind == BufferKind::Readback) break;  // the host reads that one by statistics()
         return state_->buffers.of(static_cast<ViewBufferId>(i), state_->current).buffer;
     }
     return VK_NULL_HANDLE;

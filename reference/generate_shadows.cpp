@@ -39,21 +39,21 @@ Visibility sampleView(const LightModel& light, std::size_t which, const Pixel& p
     Visibility result = receiver.mayBeBehind ? kLit : kNone;
     for (const ReceiverPlane& plane : receiver.planes) {
         const Comparison comparison = {view, input.atlases[view.atlas], plane};
-        switch (input.filter) {
-            case ShadowFilter::Hard:
+        switch (light.filter) {
+            case Filter::Hard:
                 result = merge(result, hardAt(comparison, plane.xPx, plane.yPx));
                 break;
-            case ShadowFilter::Pcf:
+            case Filter::Pcf:
                 result = merge(result, pcfAt(comparison, input.pcfRadius, plane.xPx, plane.yPx));
                 break;
-            case ShadowFilter::Pcss:
+            case Filter::Pcss:
                 // Perspective: metres; orthographic: a tangent. Both came through one rounding to float.
                 result = merge(result, pcssAt({views, input.atlases, which, rounded(light.sourceRadius, 1),
-                                               input.pcssTaps, directions},
+                                               input.pcssPresets[light.pcssPreset], directions},
                                               plane));
                 break;
-            case ShadowFilter::Off:
-                return kLit;
+            case Filter::Host:
+                return kAny;
         }
     }
     return result;
@@ -91,15 +91,16 @@ Visibility sampleLight(const LightModel& light, const Pixel& pixel, const Shadow
 }  // namespace
 
 Visibility visibility(const LightModel& light, const Pixel& pixel, const ShadowInput& input) {
-    if (!light.casts || light.firstShadowView == kNoShadowViews || input.filter == ShadowFilter::Off) return kLit;
+    if (!light.casts || light.firstShadowView == kNoShadowViews || input.shadowsOff) return kLit;
     if (!pixel.hasFaceNormal && (input.bias != BiasMode::Unbiased || input.facedAwayIsDark)) return kAny;
     const Facing facing = facingOf(light, pixel);
     const bool sampleAway = !input.facedAwayIsDark && !pixel.subsurface;
     if (!pixel.subsurface && !facing.mayFace && !sampleAway) return kDark;
     std::vector<DiskDirection> directions;
-    if (input.filter == ShadowFilter::Pcss)
-        directions =
-            diskDirections(pixel.x, pixel.y, input.patternTurn, std::max(input.pcssTaps.search, input.pcssTaps.filter));
+    if (light.filter == Filter::Pcss) {
+        const PcssTapCounts taps = input.pcssPresets[light.pcssPreset];
+        directions = diskDirections(pixel.x, pixel.y, input.patternTurn, std::max(taps.search, taps.filter));
+    }
     Visibility result = kNone;
     if (facing.mayFace || pixel.subsurface) result = sampleLight(light, pixel, input, true, directions);
     if (!facing.mayFaceAway || pixel.subsurface) return result;

@@ -13,19 +13,21 @@
 //   3. The receiver is a plane through p, a bias nearer to the light (subsurface: the larger of the light's and the
 //      frame's): receiver_plane.h. A texel is lit iff its surface is no nearer to the light than that plane at the
 //      texel's centre.
-//   4. Hard and percentage closer filtering: filters.h. Soft shadows: pcss.h.
+//   4. By the light's own filter. Hard and percentage closer filtering: filters.h. Soft shadows: pcss.h, with the taps
+//      of the light's preset.
 //   5. v' = 1 - f (1 - v), f being the light's shadow fade, for directional lights one of the distance from the camera
-//   to
-//      p. q = round(levels sqrt(v')), levels = 255 or 15.
+//      to p. q = round(levels sqrt(v')), levels = 255 or 15.
 // Every decision that float errors could turn (a comparison, a texel, a face, a cascade, a blocker, c <= 0) is taken
 // both ways, and the interval holds all outcomes.
 //
-// Limits: no face normals: every value is acceptable. A pixel whose projected position is uncertain by more than two
-// texels (at the light itself) likewise.
+// Limits: no face normals, or a filter of the host's own: every value is acceptable. A pixel whose projected position
+// is uncertain by more than two texels (at the light itself) likewise.
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "gpu_interface/numbers.h"
 #include "reference/filters.h"
 #include "reference/lights.h"
 #include "reference/pcss.h"
@@ -34,8 +36,6 @@
 
 namespace gnomon::reference {
 
-enum class ShadowFilter { Hard, Pcf, Off, Pcss };
-
 enum class BiasMode {
     Oriented,          ///< as in 3.
     OrientedConstant,  ///< one depth for all texels: a bias nearer to the light, or farther where c <= 0
@@ -43,9 +43,9 @@ enum class BiasMode {
 };
 
 struct ShadowInput {
-    ShadowFilter filter = ShadowFilter::Pcf;
+    bool shadowsOff = false;  ///< no filter in use: everything is lit
     int pcfRadius = 1;
-    PcssTapCounts pcssTaps;
+    std::array<PcssTapCounts, gpu::kMaxPcssPresets> pcssPresets;
     std::uint32_t patternTurn = 0;     ///< of the frame: 2^32 to a whole turn
     std::uint32_t visibilityBits = 8;  ///< 8 or 4
     double subsurfaceBiasMetres = 0.02;

@@ -34,6 +34,20 @@ std::uint32_t typeNumber(LightType type) {
     return 0;
 }
 
+std::uint32_t filterNumber(Filter filter) {
+    switch (filter) {
+        case Filter::Hard:
+            return gpu::kFilterHard;
+        case Filter::Pcf:
+            return gpu::kFilterPcf;
+        case Filter::Pcss:
+            return gpu::kFilterPcss;
+        case Filter::Host:
+            return gpu::kFilterHost;
+    }
+    return 0;
+}
+
 void checkShadowFadeOf(Findings& findings, std::size_t index, const LightModel& light, const gpu::GpuLight& gpuLight) {
     const bool fades = (gpuLight.typeAndFlags & gpu::kLightShadowFadesBit) != 0;
     const bool closeToCall = light.shadowFade < 1.0 && light.shadowFade > 1.0 - 1e-4;
@@ -52,7 +66,7 @@ void checkShadowFadeOf(Findings& findings, std::size_t index, const LightModel& 
 
 void checkShadowOf(Findings& findings, std::size_t index, const LightModel& light, const gpu::GpuLight& gpuLight) {
     const bool casts = (gpuLight.typeAndFlags & gpu::kLightCastsBit) != 0;
-    if (casts && !light.casts) findings.add("light %zu casts although the host gave it no shadow view", index);
+    if (casts && !light.casts) findings.add("light %zu casts without a wish or without shadow views", index);
     if (!casts && light.casts && light.shadowFade > 1e-4)
         findings.add("light %zu lost its shadow at shadow fade %g", index, light.shadowFade);
     if (!casts) return;
@@ -61,6 +75,12 @@ void checkShadowOf(Findings& findings, std::size_t index, const LightModel& ligh
     const std::uint32_t cascades = gpuLight.typeAndFlags >> gpu::kLightCascadesShift & gpu::kLightCascadesMask;
     if (cascades != light.cascadeCount)
         findings.add("light %zu has %u cascades instead of %u", index, cascades, light.cascadeCount);
+    const std::uint32_t filter = gpuLight.typeAndFlags >> gpu::kLightFilterShift & gpu::kLightFilterMask;
+    if (filter != filterNumber(light.filter))
+        findings.add("light %zu has filter %u instead of %u", index, filter, filterNumber(light.filter));
+    const std::uint32_t preset = gpuLight.typeAndFlags >> gpu::kLightPcssPresetShift & gpu::kLightPcssPresetMask;
+    if (preset != light.pcssPreset)
+        findings.add("light %zu has PCSS preset %u instead of %u", index, preset, light.pcssPreset);
     if (!near(gpuLight.sourceRadius, light.sourceRadius, 1e-6, 0.0))
         findings.add("light %zu has source radius %g instead of %g", index, gpuLight.sourceRadius, light.sourceRadius);
     checkShadowFadeOf(findings, index, light, gpuLight);
@@ -103,8 +123,8 @@ void fadeByPixel(const Light& light, LightModel& model) {
 
 }  // namespace
 
-std::vector<LightModel> makeLightModels(std::span<const Light> lights, const CameraModel& camera,
-                                        double rangeCutoffLux) {
+std::vector<LightModel> makeLightModels(std::span<const Light> lights, std::span<const LightShadowViews> views,
+                                        const CameraModel& camera, double rangeCutoffLux) {
     std::vector<LightModel> result;
     for (const Light& light : lights) {
         LightModel model;
@@ -114,8 +134,12 @@ std::vector<LightModel> makeLightModels(std::span<const Light> lights, const Cam
         if (light.type != LightType::Point) model.direction = normalize(vec3(light.direction));
         const bool directional = light.type == LightType::Directional;
         model.sourceRadius = directional ? std::tan(double(light.sourceRadius)) : light.sourceRadius;
-        model.casts = light.firstShadowView != kNoShadowViews;
-        model.firstShadowView = light.firstShadowView;
+        model.wantsShadow = light.casts;
+        const LightShadowViews own = result.size() < views.size() ? views[result.size()] : LightShadowViews{};
+        model.casts = light.casts && own.first != kNoShadowViews;
+        if (model.casts) model.firstShadowView = own.first;
+        model.filter = light.filter;
+        model.pcssPreset = light.pcssPreset;
         model.biasMetres = light.biasMetres;
         if (light.type == LightType::Spot) model.outerAngle = light.outerConeAngle;
         if (light.type != LightType::Directional) {
@@ -127,7 +151,7 @@ std::vector<LightModel> makeLightModels(std::span<const Light> lights, const Cam
             model.shadowFade = fade(distance, light.shadowFadeStartMetres, light.shadowFadeEndMetres);
             model.shadowFades = model.shadowFade < 1.0;
         } else if (model.casts) {
-            model.cascadeCount = light.cascadeCount;
+            model.cascadeCount = own.count;
             fadeByPixel(light, model);
         }
         result.push_back(model);

@@ -5,7 +5,7 @@
 //
 // What: every later phase of the oracle works on a vector of LightModel in sorted order, so that an element's place is
 // its light index. The order comes from the GpuLight array (hostIndex); all other values come from the host's
-// description.
+// description. A light's shadow views come beside it: the host gives them once phase 1 has answered.
 //
 // Limits: whether a light casts, and whether its shadow fades, is taken from the GpuLight's bits once the order is
 // known, because phase 1 decides it in floats: it may drop the shadow of a light whose shadow has faded away
@@ -29,9 +29,12 @@ struct LightModel {
     Vec3 position;             ///< origin-relative metres
     Vec3 direction{0, 0, -1};  ///< unit, from the light into the scene
     double rangeMetres = kInfinity;
-    double outerAngle = kPi;  ///< spots: half-angle of the cone, radians
-    double sourceRadius = 0;  ///< metres; directional lights: tangent of the angular radius
-    bool casts = false;
+    double outerAngle = kPi;   ///< spots: half-angle of the cone, radians
+    double sourceRadius = 0;   ///< metres; directional lights: tangent of the angular radius
+    bool wantsShadow = false;  ///< Light::casts
+    bool casts = false;        ///< it wants to, and has shadow views
+    Filter filter = Filter::Pcss;
+    std::uint32_t pcssPreset = 0;
     std::uint32_t firstShadowView = kNoShadowViews;
     std::uint32_t cascadeCount = 0;  ///< directional lights
     double biasMetres = 0;
@@ -46,16 +49,17 @@ struct LightModel {
     }
 };
 
-/// All lights of the host, in the host's order. `rangeCutoffLux` as in PrepareDesc.
-std::vector<LightModel> makeLightModels(std::span<const Light> lights, const CameraModel& camera,
-                                        double rangeCutoffLux = 0.02f);
+/// All lights of the host, in the host's order. `views`: of each of them; of lights beyond its end there are none.
+/// `rangeCutoffLux` as in PrepareDesc.
+std::vector<LightModel> makeLightModels(std::span<const Light> lights, std::span<const LightShadowViews> views,
+                                        const CameraModel& camera, double rangeCutoffLux = 0.02f);
 
 /// The lights of a GpuLight array in its order. Entries with a bad hostIndex become a light that reaches nothing (they
 /// are reported by checkGpuLights).
 std::vector<LightModel> orderLights(const std::vector<LightModel>& all, std::span<const gpu::GpuLight> gpuLights);
 
-/// Every GpuLight against the host's description that it names: position, range, cone, direction, masks, flags, fades,
-/// view-space depth; and no hostIndex twice. Relative tolerance: a few float roundings.
+/// Every GpuLight against the host's description that it names: position, range, cone, direction, masks, flags, filter,
+/// fades, view-space depth; and no hostIndex twice. Relative tolerance: a few float roundings.
 Findings checkGpuLights(const std::vector<LightModel>& all, const CameraModel& camera,
                         std::span<const gpu::GpuLight> gpuLights);
 

@@ -46,7 +46,7 @@ Light randomLight(Random& random, const CameraSetup& camera, const LightSetup& s
     light.sourceRadius = static_cast<float>(random.uniform(0.0, setup.maxSourceRadius));
     light.intensity = static_cast<float>(random.uniform(0.1, 100.0));
     light.mask = random.chance(0.8) ? 0xFF : static_cast<std::uint8_t>(random.below(256));
-    if (light.type != LightType::Directional && random.chance(setup.castingShare)) light.firstShadowView = 0;
+    light.casts = light.type != LightType::Directional && random.chance(setup.castingShare);
     if (random.chance(setup.fadingShare)) {
         light.fadeStartMetres = static_cast<float>(random.uniform(2, 15));
         light.fadeEndMetres = light.fadeStartMetres + static_cast<float>(random.uniform(0.5, 10));
@@ -54,6 +54,17 @@ Light randomLight(Random& random, const CameraSetup& camera, const LightSetup& s
         light.shadowFadeEndMetres = light.shadowFadeStartMetres + static_cast<float>(random.uniform(0.5, 10));
     }
     return light;
+}
+
+/// In turn, so that the random numbers are the same whatever the filters.
+void takeFilter(Light& light, std::uint32_t index, const LightSetup& setup) {
+    std::vector<Filter> filters;
+    for (const Filter filter : {Filter::Hard, Filter::Pcf, Filter::Pcss, Filter::Host})
+        if ((setup.filters & only(filter)) != 0) filters.push_back(filter);
+    if (filters.empty()) return;
+    const auto count = static_cast<std::uint32_t>(filters.size());
+    light.filter = filters[index % count];
+    light.pcssPreset = static_cast<std::uint8_t>(index / count % setup.pcssPresets);
 }
 
 }  // namespace
@@ -186,11 +197,11 @@ std::vector<Light> makeLights(Random& random, const CameraSetup& camera, const L
         }
         if (i + setup.suns >= setup.count) {
             light.type = LightType::Directional;
-            light.firstShadowView = 0;
-            light.cascadeCount = 1 + i % 4;
+            light.casts = true;
             light.sourceRadius *= 0.1f;
             store(normalize(random.inBox({-1, -1.5, -1}, {1, -0.3, 1})), light.direction);
         }
+        takeFilter(light, i, setup);
         lights.push_back(light);
     }
     return lights;

@@ -61,15 +61,17 @@ Shapes makeRoom(Random& random, std::uint32_t objects = 12);
 
 struct LightSetup {
     std::uint32_t count = 50;
-    double castingShare = 0.5;  ///< of points and spots; they get firstShadowView = 0 until buildShadows() sets it
+    double castingShare = 0.5;  ///< of points and spots
     double spotShare = 0.5;
     double directionalShare = 0.02;
     double maxRangeMetres = 6;
-    double spreadMetres = 14;      ///< half the side of the cube, around the eye and the room, that holds them
-    double maxOuterAngle = 1.2;    ///< radians
-    double fadingShare = 0.2;      ///< with distance fades that matter
-    std::uint32_t suns = 0;        ///< of `count`, the last ones: directional lights that cast, with 1 to 4 cascades
-    double maxSourceRadius = 0.1;  ///< metres; suns: a tenth of that in radians
+    double spreadMetres = 14;               ///< half the side of the cube, around the eye and the room, that holds them
+    double maxOuterAngle = 1.2;             ///< radians
+    double fadingShare = 0.2;               ///< with distance fades that matter
+    std::uint32_t suns = 0;                 ///< of `count`, the last ones: directional lights that cast
+    double maxSourceRadius = 0.1;           ///< metres; suns: a tenth of that in radians
+    FilterSet filters = only(Filter::Pcf);  ///< the lights take turns
+    std::uint32_t pcssPresets = 1;          ///< likewise
 };
 /// Random ones, and some on purpose: at the eye, crossing the near plane, touching the view's side, behind the camera,
 /// with a range derived from intensity, with a tiny range, with a very large one.

@@ -11,13 +11,13 @@ Vec3 anyAcross(Vec3 direction) {
     return normalize(cross(direction, helper));
 }
 
-std::vector<ShadowView> cascadesOf(const Light& light, const ShadowSetup& setup, bool reversed) {
+std::vector<ShadowView> cascadesOf(const Light& light, std::uint32_t count, const ShadowSetup& setup, bool reversed) {
     constexpr double kBackMetres = 30, kFarMetres = 70, kGrowth = 3;
     const Vec3 direction = normalize(vec3(light.direction));
     const Vec3 down = anyAcross(direction), right = cross(down, direction);
     std::vector<ShadowView> result;
     double half = setup.cascadeHalfExtentMetres;
-    for (std::uint32_t i = 0; i < light.cascadeCount; ++i, half *= kGrowth) {
+    for (std::uint32_t i = 0; i < count; ++i, half *= kGrowth) {
         const double texel = 2 * half / setup.viewSizePx;
         const auto toTexel = [&](double metres) { return std::floor(metres / texel) * texel - metres; };
         const Vec3 centre = setup.cascadeCentre + right * toTexel(dot(right, setup.cascadeCentre)) +
@@ -32,7 +32,6 @@ std::vector<ShadowView> viewsOf(const Light& light, const ShadowSetup& setup, bo
     const Vec3 from = vec3(light.position);
     const double farMetres = setup.infiniteFar ? kInfinity : rangeMetres * 1.1 + setup.nearMetres;
     std::vector<ShadowView> result;
-    if (light.type == LightType::Directional) return cascadesOf(light, setup, reversed);
     if (light.type == LightType::Spot) {
         const Vec3 direction = normalize(vec3(light.direction));
         // A texel more on every side than the cone needs.
@@ -130,16 +129,35 @@ void renderShadowView(const Shapes& shapes, const ShadowView& view, AtlasCopy& a
     }
 }
 
-TestShadows buildShadows(const Shapes& shapes, std::span<Light> lights, const ShadowSetup& setup,
+std::vector<LightShadowViews> numberViews(std::span<const Light> lights, const ShadowSetup& setup) {
+    std::vector<LightShadowViews> result(lights.size());
+    std::uint32_t next = 0;
+    for (std::uint32_t i = 0; i < lights.size(); ++i) {
+        if (!lights[i].casts) continue;
+        const std::uint32_t cascades = setup.cascades > 0 ? setup.cascades : 1 + i % 4;
+        const std::uint32_t count = lights[i].type == LightType::Point  ? gpu::kPointLightFaces
+                                    : lights[i].type == LightType::Spot ? 1
+                                                                        : cascades;
+        result[i] = {next, count};
+        next += count;
+    }
+    return result;
+}
+
+TestShadows buildShadows(const Shapes& shapes, std::span<const Light> lights, const ShadowSetup& setup,
                          double rangeCutoffLux) {
     TestShadows result;
+    result.lightViews = numberViews(lights, setup);
     bool flip = false;
-    for (Light& light : lights) {
-        if (light.firstShadowView == kNoShadowViews) continue;
+    for (std::uint32_t i = 0; i < lights.size(); ++i) {
+        const Light& light = lights[i];
+        if (!light.casts) continue;
         const double range = light.rangeMetres > 0 ? light.rangeMetres : std::sqrt(light.intensity / rangeCutoffLux);
-        light.firstShadowView = static_cast<std::uint32_t>(result.views.size());
-        for (const ShadowView& view : viewsOf(light, setup, setup.reversed != flip, range))
-            result.views.push_back(view);
+        const bool reversed = setup.reversed != flip;
+        const std::vector<ShadowView> views = light.type == LightType::Directional
+                                                  ? cascadesOf(light, result.lightViews[i].count, setup, reversed)
+                                                  : viewsOf(light, setup, reversed, range);
+        result.views.insert(result.views.end(), views.begin(), views.end());
         flip = setup.mixDepthKinds && !flip;
     }
     place(result.views, setup);

@@ -25,7 +25,8 @@ struct ShadowSetup {
     bool mixDepthKinds = false;  ///< every other light uses the other kind of depth
     bool infiniteFar = true;     ///< else far is a little beyond the light's range
     double nearMetres = 0.05;
-    double borderTexels = 2;  ///< by which point light faces reach beyond 90 degrees
+    double borderTexels = 2;     ///< by which point light faces reach beyond 90 degrees
+    std::uint32_t cascades = 0;  ///< of a directional light; 0: 1 to 4, by the light's index
     Vec3 cascadeCentre{0, 1, 0};
     double cascadeHalfExtentMetres = 1.5;  ///< of the first cascade
 };
@@ -33,10 +34,14 @@ struct ShadowSetup {
 struct TestShadows {
     std::vector<ShadowView> views;
     std::vector<AtlasCopy> atlases;
+    std::vector<LightShadowViews> lightViews;  ///< of each light, in the host's order
 };
 
-/// Gives every light whose firstShadowView is not kNoShadowViews its views (and sets that index).
-TestShadows buildShadows(const Shapes& shapes, std::span<Light> lights, const ShadowSetup& setup,
+/// Views for every light that casts, one light's after the other's.
+std::vector<LightShadowViews> numberViews(std::span<const Light> lights, const ShadowSetup& setup = {});
+
+/// Gives every light that casts its views, numbered like that.
+TestShadows buildShadows(const Shapes& shapes, std::span<const Light> lights, const ShadowSetup& setup,
                          double rangeCutoffLux = 0.02f);
 
 /// A perspective or orthographic view from a point along a direction; the rectangle is left at zero.

@@ -404,6 +404,7 @@ VkDeviceSize View::evaluateCommandOffset() const noexcept {
 VkBuffer View::buffer(const char* name) const noexcept {
     for (std::uint32_t i = 0; i < kViewBufferCount; ++i) {
         if (std::strcmp(viewBuffers()[i].name, name) != 0) continue;
+        if (viewBuffers()[i].kind == BufferKind::Readback) break;  // the host reads that one by statistics()
         return state_->buffers.of(static_cast<ViewBufferId>(i), state_->current).buffer;
     }
     return VK_NULL_HANDLE;

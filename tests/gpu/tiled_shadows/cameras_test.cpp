@@ -52,7 +52,8 @@ TEST_P(CamerasTest, DynamicResolutionAndViewportOffset) {
     desc.listEntries = 17 * 9 * 90;
     desc.visibilitySlots = 17 * 9 * 40;
     for (const ListReservation reservation : {ListReservation::Approximate, ListReservation::Accurate}) {
-        Rig rig(device(), {.reservation = reservation}, desc);
+        input.settings.listReservation = reservation;
+        Rig rig(device(), {}, desc);
         ASSERT_TRUE(rig.ok());
         std::uint32_t frame = 0;
         for (const auto& [width, height] : kExtents) {
@@ -106,7 +107,8 @@ void checkAddressing(TestDevice& device, std::uint32_t width, std::uint32_t heig
     for (const auto& [x, y] : pixels) input.receivers.depth[std::size_t(y) * width + x] = 0.05f / 3;  // 3 m away
     input.lights.resize(2);
     input.lights[0].rangeMetres = input.lights[1].rangeMetres = 1e4f;
-    input.lights[1].firstShadowView = 0;
+    useFilter(input, Filter::Pcf);
+    input.lightViews = {{}, {0, gpu::kPointLightFaces}};
     ViewDesc desc = viewDescFor(input);
     desc.listEntries = 300;
     desc.visibilitySlots = 100;

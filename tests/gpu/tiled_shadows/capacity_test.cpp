@@ -32,7 +32,8 @@ std::vector<Light> everywhere(std::uint32_t count) {
         light.position[2] = static_cast<float>(random.uniform(-4, 4));
         light.rangeMetres = 60;
         light.fadeEndMetres = std::numeric_limits<float>::infinity();
-        if (random.chance(0.3)) light.firstShadowView = 0;
+        light.casts = random.chance(0.3);
+        light.filter = Filter::Pcf;
     }
     return lights;
 }
@@ -46,12 +47,16 @@ ViewDesc roomFor(const FrameInput& input, std::uint32_t entriesPerTile) {
 
 TEST_P(CapacityTest, NumberOfLights) {
     FrameInput input = floorFrame();
+    input.settings.filters = only(Filter::Hard);
     for (const ListReservation reservation : {ListReservation::Approximate, ListReservation::Accurate}) {
-        Rig rig(device(), {.filter = Filter::Hard, .reservation = reservation}, roomFor(input, 1026));
+        input.settings.listReservation = reservation;
+        Rig rig(device(), {}, roomFor(input, 1026));
         ASSERT_TRUE(rig.ok());
         for (const std::uint32_t count : {0u, 1u, 2u, 3u, 4u, 31u, 32u, 33u, 1023u, 1024u, 1025u, 1400u}) {
             SCOPED_TRACE(count);
             input.lights = everywhere(count);
+            input.lightViews = sharedViews(input.lights);
+            useFilter(input, Filter::Hard);
             const FrameResult result = rig.run(input);
             checkFrame(input, result, {.bytes = count < 100});
             EXPECT_EQ(result.report.given, count);
@@ -71,6 +76,7 @@ TEST_P(CapacityTest, DirectionalLights) {
         for (const std::uint32_t points : {0u, 50u}) {
             SCOPED_TRACE(std::to_string(suns) + " directional, " + std::to_string(points) + " points");
             input.lights = everywhere(points);
+            input.lightViews = sharedViews(input.lights);
             if (points != 0) input.lights[0].rangeMetres = 0.3f;
             for (std::uint32_t i = 0; i < suns; ++i) {
                 Light sun;
@@ -102,13 +108,14 @@ TEST_P(CapacityTest, LightsThatFacesLookAwayFrom) {
         light.position[0] = light.position[2] = 0;
         light.position[1] = -0.5f;
     }
-    input.lights[0].firstShadowView = 0;
-    input.lights[1].firstShadowView = kNoShadowViews;
+    input.lights[0].casts = true;
+    input.lights[1].casts = false;
+    input.lightViews = sharedViews(input.lights);
     Rig rig(device(), {}, roomFor(input, 30));
     ASSERT_TRUE(rig.ok());
     for (const bool drop : {true, false}) {
         for (const bool subsurface : {true, false}) {
-            input.dropLightsFacedAway = drop;
+            input.settings.dropLightsFacedAway = drop;
             for (std::size_t i = 1; i < input.receivers.receiverFlags.size(); i += 2)
                 input.receivers.receiverFlags[i] = subsurface ? gpu::kReceiverSubsurfaceBit : 0;
             const FrameResult result = rig.run(input);
@@ -124,6 +131,7 @@ TEST_P(CapacityTest, LightAndReceiverMasks) {
     Rig rig(device(), {}, roomFor(input, 30));
     ASSERT_TRUE(rig.ok());
     input.lights = everywhere(9);
+    input.lightViews = sharedViews(input.lights);
     for (std::uint32_t i = 0; i < 9; ++i) input.lights[i].mask = static_cast<std::uint8_t>(i == 8 ? 0 : 1u << i);
     for (std::uint32_t receiver : {0x01u, 0x80u, 0x3Cu, 0xFFu, 0x00u}) {
         for (std::size_t i = 0; i < input.receivers.receiverFlags.size(); i += 2)
@@ -157,15 +165,17 @@ TEST_P(CapacityTest, AwkwardPlaces) {
                     light.type = angle == 0.0f ? LightType::Point : LightType::Spot;
                     if (angle != 0.0f) light.outerConeAngle = angle;
                     light.rangeMetres = static_cast<float>(range);
-                    if (random.chance(0.5)) light.firstShadowView = 0;
+                    light.casts = random.chance(0.5);
                     input.lights.push_back(light);
                 }
             }
         }
+        input.lightViews = sharedViews(input.lights);
+        useFilter(input, Filter::Hard);
         ViewDesc desc = viewDescFor(input);
         desc.listEntries = 54 * 240;
         desc.visibilitySlots = 54 * 120;
-        Rig rig(device(), {.filter = Filter::Hard}, desc);
+        Rig rig(device(), {}, desc);
         ASSERT_TRUE(rig.ok());
         const Checked checked = checkFrame(input, rig.run(input));
         EXPECT_GT(checked.early.must, 500u);

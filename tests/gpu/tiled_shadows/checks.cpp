@@ -3,6 +3,8 @@
 #include <set>
 
 #include "reference/hierarchical_depth.h"
+#include "reference/on_screen.h"
+#include "reference/prepare.h"
 
 namespace gnomon::test {
 
@@ -10,34 +12,22 @@ using namespace reference;
 
 namespace {
 
-ShadowFilter filterOf(Filter filter) {
-    switch (filter) {
-        case Filter::Hard:
-            return ShadowFilter::Hard;
-        case Filter::Pcf:
-            return ShadowFilter::Pcf;
-        case Filter::Pcss:
-            return ShadowFilter::Pcss;
-        case Filter::Off:
-            break;
-    }
-    return ShadowFilter::Off;
-}
-
 ShadowInput shadowInputOf(const FrameInput& input, const FrameResult& result) {
-    const ContextSetup& setup = result.setup;
+    const ShadowSettings& settings = result.settings;
     ShadowInput out;
-    out.filter = filterOf(setup.filter);
-    out.pcfRadius = static_cast<int>(setup.pcfRadius);
-    out.pcssTaps = {static_cast<int>(setup.pcss.searchTaps), static_cast<int>(setup.pcss.filterTaps)};
-    out.patternTurn = input.patternPerFrame ? result.constants.frameNumber * 2654435769u : 0u;
+    out.shadowsOff = settings.filters == 0;
+    out.pcfRadius = static_cast<int>(settings.pcfRadius);
+    for (std::uint32_t i = 0; i < settings.pcssPresetCount; ++i)
+        out.pcssPresets[i] = {static_cast<int>(settings.pcssPresets[i].searchTaps),
+                              static_cast<int>(settings.pcssPresets[i].filterTaps)};
+    out.patternTurn = settings.patternPerFrame ? result.constants.frameNumber * 2654435769u : 0u;
     EXPECT_EQ(result.constants.patternTurn, out.patternTurn);
-    out.visibilityBits = setup.visibilityBits;
-    out.bias = setup.depthBias == DepthBias::Oriented           ? BiasMode::Oriented
-               : setup.depthBias == DepthBias::OrientedConstant ? BiasMode::OrientedConstant
-                                                                : BiasMode::Unbiased;
-    out.facedAwayIsDark = setup.facedAwayIsDark;
-    out.subsurfaceBiasMetres = input.subsurfaceBiasMetres;
+    out.visibilityBits = settings.visibilityBits;
+    out.bias = settings.depthBias == DepthBias::Oriented           ? BiasMode::Oriented
+               : settings.depthBias == DepthBias::OrientedConstant ? BiasMode::OrientedConstant
+                                                                   : BiasMode::Unbiased;
+    out.facedAwayIsDark = settings.facedAwayIsDark;
+    out.subsurfaceBiasMetres = settings.subsurfaceBiasMetres;
     out.views = makeShadowViewModels(input.shadows->views, input.shadows->atlases);
     out.atlases = input.shadows->atlases;
     return out;
@@ -121,8 +111,8 @@ Sums sumsOf(const FrameResult& r, bool shadows) {
 void checkStatistics(const FrameResult& r, const Sums& sums) {
     const FrameStatistics& s = r.statistics;
     const auto tiles = static_cast<std::uint32_t>(r.slotIds.size());
-    const bool fixed = r.setup.reservation == ListReservation::Fixed;
-    EXPECT_EQ(s.listEntries, fixed ? tiles * gpu::roundUpToEarlyWord(r.setup.fixedEntries) : r.counters.listEntries);
+    const bool fixed = r.settings.listReservation == ListReservation::Fixed;
+    EXPECT_EQ(s.listEntries, fixed ? tiles * gpu::roundUpToEarlyWord(r.settings.fixedListEntriesPerTile) : r.counters.listEntries);
     EXPECT_EQ(s.visibilitySlots, r.counters.visibilitySlots);
     EXPECT_EQ(s.listOverflowTiles, sums.withoutSpace);
     EXPECT_EQ(s.accurateExceedsApproximate, 0u);
@@ -146,9 +136,9 @@ void checkCounters(const FrameResult& r, const CheckOptions& options) {
     const gpu::GpuCounters& c = r.counters;
     EXPECT_EQ(c.accurateExceedsApproximate, 0u);
     EXPECT_EQ(c.listOverflowTiles, sums.withoutSpace);
-    if (r.setup.reservation == ListReservation::Approximate) {
+    if (r.settings.listReservation == ListReservation::Approximate) {
         EXPECT_EQ(c.listEntries, sums.reservedApproximate);
-    } else if (r.setup.reservation == ListReservation::Accurate) {
+    } else if (r.settings.listReservation == ListReservation::Accurate) {
         EXPECT_EQ(c.listEntries, sums.reservedAccurate);
     }
     if (!options.listOverflow) {
@@ -169,6 +159,28 @@ void checkCounters(const FrameResult& r, const CheckOptions& options) {
     if (r.hasStatistics) checkStatistics(r, sums);
 }
 
+namespace {
+
+/// What prepare() said before the shadow views were planned: it is what the lists hold.
+void checkAnswer(const std::vector<LightModel>& all, const CameraModel& camera, const FrameResult& result) {
+    PreparedLights answer;
+    answer.visible = result.answer;
+    answer.report = result.answerReport;
+    expectNone(checkReport(all, camera, answer), "report of phase 1");
+    const std::vector<LightModel> lights = orderLights(all, answer.visible);
+    expectNone(checkVisibleLights(all, lights, camera).findings, "answer of phase 1");
+    const gpu::GpuFrame& frame = result.constants;
+    const auto tiles = std::size_t(frame.maskTileColumns) * frame.maskTileRows;
+    expectNone(checkOnScreen(lights, camera, answer.visible,
+                             std::span(result.tileLightMasks).first(tiles * gpu::kLightMaskEntryWords),
+                             frame.maskTileColumns, frame.maskTileRows),
+               "lights on screen");
+    ASSERT_EQ(result.lights.size(), answer.visible.size());
+    for (std::size_t i = 0; i < lights.size(); ++i) EXPECT_EQ(result.lights[i].hostIndex, answer.visible[i].light);
+}
+
+}  // namespace
+
 Checked checkFrame(const FrameInput& input, const FrameResult& result, const CheckOptions& options) {
     Checked out;
     if (result.slotIds.empty()) {
@@ -177,11 +189,12 @@ Checked checkFrame(const FrameInput& input, const FrameResult& result, const Che
     }
     const CameraModel camera = makeCameraModel(input.camera, input.widthPx, input.heightPx);
     out.grid = makePixelGrid(camera, input.receivers);
-    const std::vector<LightModel> all = makeLightModels(input.lights, camera);
+    const std::vector<LightModel> all = makeLightModels(input.lights, input.lightViews, camera);
+    checkAnswer(all, camera, result);
     expectNone(checkGpuLights(all, camera, result.lights), "lights");
     out.lights = orderLights(all, result.lights);
     if (options.depths) expectNone(checkTileDepths(out.grid, result.depthRanges), "hierarchical depth");
-    out.expected = findLights(out.grid, out.lights, input.dropLightsFacedAway && result.setup.facedAwayIsDark);
+    out.expected = findLights(out.grid, out.lights, result.settings.dropLightsFacedAway && result.settings.facedAwayIsDark);
     const ListBuffers lists = result.lists();
     out.approximate = checkApproximate(out.grid, out.expected, out.lights.size(), result.groupMasks, lists);
     expectNone(out.approximate.findings, "find lights approximate");
@@ -189,7 +202,7 @@ Checked checkFrame(const FrameInput& input, const FrameResult& result, const Che
     expectNone(out.early.findings, "find lights accurate");
     ListBuffers structure = lists;
     // Beyond the end of the pool, tiles without lights have no span of their own.
-    if (options.listOverflow && result.setup.reservation == ListReservation::Fixed)
+    if (options.listOverflow && result.settings.listReservation == ListReservation::Fixed)
         structure.reservation = gpu::kReserveAccurate;
     if (!options.shadows) structure.finalCounts = {};
     out.structure = checkStructure(structure, out.lights.size());

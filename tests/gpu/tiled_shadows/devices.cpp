@@ -110,26 +110,14 @@ ContextDesc TestDevice::contextDesc(const ContextSetup& setup) const {
     desc.queueFamilies = std::span(&family, 1);
     desc.debugLabels = instance_.debugLabels();
     desc.subgroupSize = setup.subgroupSize;
-    desc.filter = setup.filter;
-    desc.pcfRadius = setup.pcfRadius;
-    desc.pcss = setup.pcss;
-    desc.visibilityBits = setup.visibilityBits;
-    desc.depthBias = setup.depthBias;
-    desc.facedAwayIsDark = setup.facedAwayIsDark;
     desc.maxShadowAtlases = setup.maxShadowAtlases;
-    desc.listReservation = setup.reservation;
-    desc.fixedListEntriesPerTile = setup.fixedEntries;
-    desc.hostDepthPyramid = setup.hostDepthPyramid;
     if (setup.hostProvider) desc.generateShadowsSpirv = kHostProviderSpirv;
     return desc;
 }
 
 const Context* TestDevice::context(const ContextSetup& setup) {
-    char key[96];
-    std::snprintf(key, sizeof(key), "%d %u %d %u %u %d %d %u %u %u %u %d %d", int(setup.filter), setup.pcfRadius,
-                  int(setup.reservation), setup.fixedEntries, setup.subgroupSize, int(setup.hostDepthPyramid),
-                  int(setup.hostProvider), setup.pcss.searchTaps, setup.pcss.filterTaps, setup.visibilityBits,
-                  setup.maxShadowAtlases, int(setup.depthBias), int(setup.facedAwayIsDark));
+    char key[48];
+    std::snprintf(key, sizeof(key), "%u %u %d", setup.subgroupSize, setup.maxShadowAtlases, int(setup.hostProvider));
     std::unique_ptr<Context>& context = contexts_[key];
     if (context == nullptr) {
         const Result made = Context::create(contextDesc(setup), context);

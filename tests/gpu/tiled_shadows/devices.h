@@ -8,24 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "gnomon/tiled_shadows.h"
+#include "gnomon/gnomon.h"
 #include "renderer/gpu/device.h"
 
 namespace gnomon::test {
 
 /// What a Context is made with; tests that agree on all of it share one.
 struct ContextSetup {
-    Filter filter = Filter::Pcf;
-    std::uint32_t pcfRadius = 1;
-    PcssTaps pcss = kPcssMedium;
-    std::uint32_t visibilityBits = 8;
-    DepthBias depthBias = DepthBias::Oriented;
-    bool facedAwayIsDark = true;
     std::uint32_t maxShadowAtlases = 4;
-    ListReservation reservation = ListReservation::Approximate;
-    std::uint32_t fixedEntries = 0;
     std::uint32_t subgroupSize = 0;
-    bool hostDepthPyramid = false;
     bool hostProvider = false;  ///< phase 4 with host_provider/gnomon_host_provider.glsl
 };
 

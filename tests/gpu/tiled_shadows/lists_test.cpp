@@ -18,10 +18,12 @@ constexpr ListReservation kReservations[] = {ListReservation::Approximate, ListR
                                              ListReservation::Fixed};
 
 TEST_P(ListsTest, DepthAndLightsOfARoom) {
-    const FrameInput input = makeRoomFrame({.widthPx = 136, .heightPx = 88});
+    FrameInput input = makeRoomFrame({.widthPx = 136, .heightPx = 88});
+    input.settings.fixedListEntriesPerTile = 50;
     for (const ListReservation reservation : kReservations) {
         SCOPED_TRACE(int(reservation));
-        Rig rig(device(), {.reservation = reservation, .fixedEntries = 50}, viewDescFor(input));
+        input.settings.listReservation = reservation;
+        Rig rig(device(), {}, viewDescFor(input));
         ASSERT_TRUE(rig.ok());
         const FrameResult result = rig.run(input);
         const Checked checked = checkFrame(input, result);
@@ -62,7 +64,7 @@ TEST_P(ListsTest, WithoutFaceNormalsAndReceiverFlags) {
         ASSERT_TRUE(rig.ok());
         const FrameResult result = rig.run(input);
         checkFrame(input, result);
-        input.dropLightsFacedAway = false;  // then nothing hangs on the missing normals but bytes
+        input.settings.dropLightsFacedAway = false;  // then nothing hangs on the missing normals but bytes
         checkFrame(input, rig.run(input));
     }
 }
@@ -71,10 +73,11 @@ TEST_P(ListsTest, WithoutFaceNormalsAndReceiverFlags) {
 TEST_P(ListsTest, NormalsFromDepthOnAPlane) {
     RoomSetup setup;
     setup.objects = 0;  // floor and back wall
+    setup.lights.filters = only(Filter::Hard);
     FrameInput given = makeRoomFrame(setup);
     FrameInput derived = given;
     derived.receivers.faceNormals.clear();
-    Rig rig(device(), {.filter = Filter::Hard}, viewDescFor(given));
+    Rig rig(device(), {}, viewDescFor(given));
     ASSERT_TRUE(rig.ok());
     const FrameResult a = rig.run(given), b = rig.run(derived);
     std::size_t same = 0, all = 0;
@@ -115,7 +118,8 @@ TEST_P(ListsTest, HostDepthPyramid) {
         setup.camera.reversed = reversed;
         FrameInput input = makeRoomFrame(setup);
         const float background = reversed ? 0.0f : 1.0f;
-        Rig rig(device(), {.hostDepthPyramid = true}, viewDescFor(input));
+        input.settings.hostDepthPyramid = true;
+        Rig rig(device(), {}, viewDescFor(input));
         ASSERT_TRUE(rig.ok());
         for (const bool withBackground : {false, true}) {
             SCOPED_TRACE(withBackground);
@@ -131,6 +135,7 @@ TEST_P(ListsTest, HostDepthPyramid) {
         }
         // An endless tile, and no light with a range: the zBins have no length.
         input.lights.assign(3, {});
+        input.lightViews.clear();
         for (Light& light : input.lights) light.type = LightType::Directional;
         CheckOptions options;
         options.depths = false;

@@ -35,22 +35,8 @@ TEST_P(MisuseTest, ContextDesc) {
         {"getInstanceProcAddr", [](ContextDesc& d) { d.getInstanceProcAddr = nullptr; }},
         {"queueFamilies", [](ContextDesc& d) { d.queueFamilies = {}; }},
         {"queueFamilies", [&](ContextDesc& d) { d.queueFamilies = many; }},
-        {"pcfRadius", [](ContextDesc& d) { d.pcfRadius = 0; }},
-        {"pcfRadius", [](ContextDesc& d) { d.pcfRadius = 4; }},
-        {"taps", [](ContextDesc& d) { d.pcss.searchTaps = 0; }},
-        {"taps", [](ContextDesc& d) { d.pcss.searchTaps = 65; }},
-        {"taps", [](ContextDesc& d) { d.pcss.filterTaps = 0; }},
-        {"taps", [](ContextDesc& d) { d.pcss.filterTaps = 65; }},
         {"maxShadowAtlases", [](ContextDesc& d) { d.maxShadowAtlases = 0; }},
         {"maxShadowAtlases", [](ContextDesc& d) { d.maxShadowAtlases = 5; }},
-        {"visibilityBits", [](ContextDesc& d) { d.visibilityBits = 0; }},
-        {"visibilityBits", [](ContextDesc& d) { d.visibilityBits = 5; }},
-        {"fixedListEntriesPerTile", [](ContextDesc& d) { d.listReservation = ListReservation::Fixed; }},
-        {"fixedListEntriesPerTile",
-         [](ContextDesc& d) {
-             d.listReservation = ListReservation::Fixed;
-             d.fixedListEntriesPerTile = 1025;
-         }},
     };
     for (const Case& c : cases) {
         ContextDesc desc = device().contextDesc({});
@@ -65,6 +51,39 @@ TEST_P(MisuseTest, ContextDesc) {
         std::unique_ptr<Context> context;
         expectRefused(Context::create(desc, context), "subgroups", Status::UnsupportedDevice);
     }
+}
+
+struct SettingsCase {
+    const char* word;
+    std::function<void(ShadowSettings&)> spoil;
+};
+
+const float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+
+std::vector<SettingsCase> badSettings() {
+    using S = ShadowSettings;
+    return {
+        {"filters", [](S& s) { s.filters = 1u << 4; }},
+        {"filters", [](S& s) { s.filters |= 0x80000000u; }},
+        {"generateShadowsSpirv", [](S& s) { s.filters |= only(Filter::Host); }},  // this context has none
+        {"pcfRadius", [](S& s) { s.pcfRadius = 0; }},
+        {"pcfRadius", [](S& s) { s.pcfRadius = 4; }},
+        {"pcssPresetCount", [](S& s) { s.pcssPresetCount = 0; }},
+        {"pcssPresetCount", [](S& s) { s.pcssPresetCount = 5; }},
+        {"taps", [](S& s) { s.pcssPresets[0].searchTaps = 0; }},
+        {"taps", [](S& s) { s.pcssPresets[0].searchTaps = 65; }},
+        {"taps", [](S& s) { s.pcssPresets[0].filterTaps = 0; }},
+        {"pcssPresets[3]", [](S& s) { s.pcssPresetCount = 4, s.pcssPresets[3].filterTaps = 65; }},
+        {"DepthBias", [](S& s) { s.depthBias = static_cast<DepthBias>(3); }},
+        {"subsurface", [](S& s) { s.subsurfaceBiasMetres = -1; }},
+        {"subsurface", [](S& s) { s.subsurfaceBiasMetres = kNan; }},
+        {"visibilityBits", [](S& s) { s.visibilityBits = 0; }},
+        {"visibilityBits", [](S& s) { s.visibilityBits = 5; }},
+        {"ListReservation", [](S& s) { s.listReservation = static_cast<ListReservation>(3); }},
+        {"fixedListEntriesPerTile", [](S& s) { s.listReservation = ListReservation::Fixed; }},
+        {"fixedListEntriesPerTile",
+         [](S& s) { s.listReservation = ListReservation::Fixed, s.fixedListEntriesPerTile = 1025; }},
+    };
 }
 
 TEST_P(MisuseTest, ViewDesc) {
@@ -84,6 +103,7 @@ TEST_P(MisuseTest, ViewDesc) {
         {"guardBytes", [](ViewDesc& d) { d.guardBytes = 257; }},
         {"rangeCutoffLux", [](ViewDesc& d) { d.prepare.rangeCutoffLux = 0; }},
         {"keepFactor", [](ViewDesc& d) { d.prepare.keepFactor = 0.5f; }},
+        {"visibilityBits", [](ViewDesc& d) { d.visibilityBits = 16; }},
     };
     const Context* context = device().context({});
     ASSERT_NE(context, nullptr);
@@ -111,8 +131,9 @@ TEST_P(MisuseTest, MemoryReport) {
     ASSERT_TRUE(View::memory(*context, desc, report).ok());
     EXPECT_TRUE(report.poolsCapped);
     EXPECT_LE(report.visibilitySlots, gpu::kMaxVisibilitySlots);
-    for (std::uint32_t i = 0; i < report.bufferCount; ++i)
-        EXPECT_LE(report.buffers[i].bytes, device().vulkan().limits().maxStorageBufferRange) << report.buffers[i].name;
+    EXPECT_GT(report.buffers().size(), 10u);
+    for (const BufferMemory& buffer : report.buffers())
+        EXPECT_LE(buffer.bytes, device().vulkan().limits().maxStorageBufferRange) << buffer.name;
 }
 
 /// Its last light is a sun, and the last shadow view that sun's last cascade.
@@ -121,8 +142,6 @@ FrameInput smallRoom() {
     setup.lights.suns = 1;
     return makeRoomFrame(setup);
 }
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
 
 TEST_P(MisuseTest, ShadowViews) {
     const FrameInput input = smallRoom();
@@ -146,6 +165,7 @@ TEST_P(MisuseTest, ShadowViews) {
         {"perspective", [](ShadowView& v) { v.orthographic = true, v.farMetres = 10; }},
         {"near", [](ShadowView& v) { v.nearMetres = kNan; }},
     };
+    ASSERT_TRUE(rig.prepare(input).ok());  // what is refused has not used it up
     const auto refuses = [&](const Case& c, std::size_t which) {
         FrameDesc frame = rig.frameDesc(input);
         std::vector<ShadowView> views = input.shadows->views;
@@ -163,6 +183,185 @@ TEST_P(MisuseTest, ShadowViews) {
     checkFrame(input, rig.run(input));
 }
 
+TEST_P(MisuseTest, Settings) {
+    const FrameInput input = smallRoom();
+    const Context* context = device().context({});
+    Rig rig(device(), {}, viewDescFor(input));
+    ASSERT_TRUE(rig.ok() && context != nullptr);
+    EXPECT_TRUE(checkSettings({}).ok());
+    EXPECT_TRUE(context->prepare(input.settings).ok());
+    ASSERT_TRUE(rig.prepare(input).ok());
+    const std::vector<SettingsCase> cases = badSettings();
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i) + " " + cases[i].word);
+        FrameDesc frame = rig.frameDesc(input);
+        cases[i].spoil(frame.settings);
+        const std::uint32_t pipelines = context->pipelineCount();
+        expectRefused(rig.view().beginFrame(frame), cases[i].word);
+        expectRefused(context->prepare(frame.settings), cases[i].word);
+        EXPECT_EQ(context->pipelineCount(), pipelines);
+        // The settings by themselves are right where a context may have a provider of the host's.
+        const bool knowsContext = std::strcmp(cases[i].word, "generateShadowsSpirv") == 0;
+        if (!knowsContext) expectRefused(checkSettings(frame.settings), cases[i].word);
+        EXPECT_EQ(checkSettings(frame.settings).ok(), knowsContext);
+    }
+    ASSERT_TRUE(rig.view().beginFrame(rig.frameDesc(input)).ok());
+}
+
+// What lights need of the settings.
+TEST_P(MisuseTest, FiltersOfLights) {
+    FrameInput input = smallRoom();
+    Rig rig(device(), {}, viewDescFor(input));
+    ASSERT_TRUE(rig.ok());
+    const auto begin = [&] { return rig.begin(input); };
+    ASSERT_TRUE(begin().ok());
+    Light& sun = input.lights.back();
+    for (const Filter other : {Filter::Hard, Filter::Pcss, Filter::Host}) {
+        sun.filter = other;
+        expectRefused(begin(), "filter is not among ShadowSettings::filters");
+    }
+    input.settings.filters = 0;  // nothing is evaluated
+    EXPECT_TRUE(begin().ok());
+    input.settings.filters = only(Filter::Pcf);
+    sun.casts = false;
+    EXPECT_TRUE(begin().ok());
+    sun.casts = true;
+    const std::vector<LightShadowViews> views = input.lightViews;
+    input.lightViews.back() = {};
+    EXPECT_TRUE(begin().ok());
+    input.lightViews = views;
+    sun.filter = Filter::Pcss;
+    input.settings.filters |= only(Filter::Pcss);
+    sun.pcssPreset = 1;
+    expectRefused(begin(), "pcssPreset is 1; ShadowSettings::pcssPresetCount is 1");
+    input.settings.pcssPresetCount = 2;
+    EXPECT_TRUE(begin().ok());
+    sun.pcssPreset = 4;
+    input.settings.pcssPresetCount = 4;
+    expectRefused(begin(), "pcssPreset");
+    sun.pcssPreset = 3;
+    EXPECT_TRUE(begin().ok());
+    sun.filter = Filter::Pcf;  // of other filters nobody asks for a preset
+    input.settings.pcssPresetCount = 1;
+    checkFrame(input, rig.run(input));
+}
+
+TEST_P(MisuseTest, Prepare) {
+    const FrameInput input = smallRoom();
+    Rig rig(device(), {}, viewDescFor(input));
+    ASSERT_TRUE(rig.ok());
+    std::vector<Light> lights = input.lights;
+    const auto withSun = [&](ViewInput& v, auto spoil) {
+        lights = input.lights;
+        spoil(lights.back());
+        v.lights = lights;
+    };
+    struct Case {
+        const char* word;
+        std::function<void(ViewInput&)> spoil;
+    };
+    const Case cases[] = {
+        {"0x24", [](ViewInput& v) { v.widthPx = 0; }},
+        {"32x0", [](ViewInput& v) { v.heightPx = 0; }},
+        {"maximum", [](ViewInput& v) { v.widthPx = 33; }},
+        {"maximum", [](ViewInput& v) { v.heightPx = 25; }},
+        {"ight",
+         [&](ViewInput& v) {
+             lights = input.lights;
+             for (Light& light : lights) light.position[1] = kNan;
+             v.lights = lights;
+         }},
+        {"sourceRadius", [&](ViewInput& v) { withSun(v, [](Light& sun) { sun.sourceRadius = 0.51f; }); }},
+        {"shadowFade", [&](ViewInput& v) { withSun(v, [](Light& sun) { sun.shadowFadeEndMetres = 1; }); }},
+        {"Filter", [&](ViewInput& v) { withSun(v, [](Light& sun) { sun.filter = static_cast<Filter>(9); }); }},
+        {"amera", [](ViewInput& v) { v.camera.viewFromWorld[0] = 2; }},
+        {"amera", [](ViewInput& v) { std::memset(v.camera.clipFromView, 0, 64); }},
+    };
+    PreparedLights answer;
+    for (std::size_t i = 0; i < std::size(cases); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i) + " " + cases[i].word);
+        ASSERT_TRUE(rig.prepare(input).ok());
+        ViewInput view = Rig::viewInput(input);
+        cases[i].spoil(view);
+        expectRefused(rig.view().prepare(view, answer), cases[i].word);
+        // The answer before it does not count any more.
+        expectRefused(rig.view().beginFrame(rig.frameDesc(input)), "View::prepare()");
+    }
+    checkFrame(input, rig.run(input));
+}
+
+// Every frame has a prepare() of its own, which counts once.
+TEST_P(MisuseTest, BeginFrameWithoutPrepare) {
+    const FrameInput input = smallRoom();
+    Rig rig(device(), {}, viewDescFor(input));
+    ASSERT_TRUE(rig.ok());
+    FrameDesc frame = rig.frameDesc(input);
+    expectRefused(rig.view().beginFrame(frame), "View::prepare()");
+    ASSERT_TRUE(rig.prepare(input).ok());
+    frame = rig.frameDesc(input);
+    frame.depth.view = VK_NULL_HANDLE;
+    expectRefused(rig.view().beginFrame(frame), "depth");
+    PrepareReport report;
+    ASSERT_TRUE(rig.view().beginFrame(rig.frameDesc(input), &report).ok());  // what was refused did not use it up
+    EXPECT_EQ(report.given, input.lights.size());
+    expectRefused(rig.view().beginFrame(rig.frameDesc(input)), "View::prepare()");
+    checkFrame(input, rig.run(input));
+}
+
+TEST_P(MisuseTest, LightViews) {
+    const FrameInput input = smallRoom();
+    Rig rig(device(), {}, viewDescFor(input));
+    ASSERT_TRUE(rig.ok());
+    ASSERT_TRUE(rig.prepare(input).ok());
+    const auto total = static_cast<std::uint32_t>(input.shadows->views.size());
+    // The place in the answer of the first light of a type that casts.
+    const auto placeOf = [&](LightType type) {
+        for (std::size_t i = 0; i < rig.answer().size(); ++i)
+            if (rig.answer()[i].type == type && rig.answer()[i].casts) return i;
+        ADD_FAILURE() << "no light of type " << int(type);
+        return std::size_t{0};
+    };
+    const std::size_t sun = placeOf(LightType::Directional), point = placeOf(LightType::Point),
+                      spot = placeOf(LightType::Spot);
+    using Views = std::vector<LightShadowViews>;
+    struct Case {
+        const char* word;
+        std::function<void(Views&)> spoil;
+    };
+    const Case cases[] = {
+        {"lights were given shadow views", [](Views& v) { v.pop_back(); }},
+        {"lights were given shadow views", [](Views& v) { v.emplace_back(); }},
+        {"lights were given shadow views", [](Views& v) { v.resize(1); }},
+        {"1 to 8 shadow views", [&](Views& v) { v[sun].count = 0; }},
+        {"1 to 8 shadow views", [&](Views& v) { v[sun].count = 9; }},
+        {"out of bounds", [&](Views& v) { ++v[sun].first; }},
+        {"six shadow views", [&](Views& v) { v[point].count = 5; }},
+        {"six shadow views", [&](Views& v) { v[point].count = 7; }},
+        {"out of bounds", [&](Views& v) { v[point].first = total - 5; }},
+        {"one shadow view", [&](Views& v) { v[spot].count = 2; }},
+        {"one shadow view", [&](Views& v) { v[spot].count = 0; }},
+        {"out of bounds", [&](Views& v) { v[spot].first = total; }},
+        {"out of bounds", [&](Views& v) { v[spot].first = kNoShadowViews - 1; }},
+        {"must be perspective", [&](Views& v) { v[spot].first = total - 1; }},
+        {"must be orthographic", [&](Views& v) { v[sun] = v[point]; }},
+    };
+    for (std::size_t i = 0; i < std::size(cases); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i) + " " + cases[i].word);
+        FrameDesc frame = rig.frameDesc(input);
+        Views views(frame.lightViews.begin(), frame.lightViews.end());
+        cases[i].spoil(views);
+        frame.lightViews = views;
+        expectRefused(rig.view().beginFrame(frame), cases[i].word);
+    }
+    // No views at all are fine: nothing casts.
+    FrameDesc frame = rig.frameDesc(input);
+    frame.lightViews = {};
+    PrepareReport report;
+    ASSERT_TRUE(rig.view().beginFrame(frame, &report).ok());
+    EXPECT_EQ(report.casting, 0u);
+    checkFrame(input, rig.run(input));
+}
+
 TEST_P(MisuseTest, BeginFrame) {
     const FrameInput input = smallRoom();
     Rig rig(device(), {}, viewDescFor(input));
@@ -174,29 +373,19 @@ TEST_P(MisuseTest, BeginFrame) {
         spoil(atlases);
         f.atlases = atlases;
     };
-    std::vector<Light> lights = input.lights;
-    const auto withSun = [&](FrameDesc& f, auto spoil) {
-        lights = input.lights;
-        spoil(lights.back());
-        f.view.lights = lights;
-    };
     struct Case {
         const char* word;
         std::function<void(FrameDesc&)> spoil;
     };
     const Case cases[] = {
         {"depth", [](FrameDesc& f) { f.depth.view = VK_NULL_HANDLE; }},
-        {"0x24", [](FrameDesc& f) { f.view.widthPx = 0; }},
-        {"32x0", [](FrameDesc& f) { f.view.heightPx = 0; }},
-        {"maximum", [](FrameDesc& f) { f.view.widthPx = 33; }},
+        {"depthPyramid", [](FrameDesc& f) { f.settings.hostDepthPyramid = true; }},
         {"atlases", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a.resize(5, a[0]); }); }},
         {"atlas", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a[0].view = VK_NULL_HANDLE; }); }},
         {"atlas", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a[1].widthPx = 0; }); }},
         {"atlas", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a.resize(1); }); }},
         {"depthStep", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a[1].depthStep = -1.0f; }); }},
         {"depthStep", [&](FrameDesc& f) { withAtlases(f, [](auto& a) { a[1].depthStep = kNan; }); }},
-        {"subsurface", [](FrameDesc& f) { f.subsurfaceBiasMetres = -1; }},
-        {"subsurface", [](FrameDesc& f) { f.subsurfaceBiasMetres = kNan; }},
         {"depthStep", [](FrameDesc& f) { f.depthStep = -1e-6f; }},
         {"depthStep", [](FrameDesc& f) { f.depthStep = kNan; }},
         {"maxShadowViews",
@@ -205,21 +394,9 @@ TEST_P(MisuseTest, BeginFrame) {
              views.push_back(views[0]);
              f.shadowViews = views;
          }},
-        {"ight",
-         [&](FrameDesc& f) {
-             lights = input.lights;
-             for (Light& light : lights) light.position[1] = kNan;
-             f.view.lights = lights;
-         }},
         {"ight", [&](FrameDesc& f) { f.shadowViews = f.shadowViews.first(1); }},  // lights refer beyond
-        {"cascadeCount", [&](FrameDesc& f) { withSun(f, [](Light& sun) { sun.cascadeCount = 0; }); }},
-        {"cascadeCount", [&](FrameDesc& f) { withSun(f, [](Light& sun) { sun.cascadeCount = 9; }); }},
-        {"firstShadowView", [&](FrameDesc& f) { withSun(f, [](Light& sun) { ++sun.firstShadowView; }); }},
-        {"sourceRadius", [&](FrameDesc& f) { withSun(f, [](Light& sun) { sun.sourceRadius = 0.51f; }); }},
-        {"shadowFade", [&](FrameDesc& f) { withSun(f, [](Light& sun) { sun.shadowFadeEndMetres = 1; }); }},
-        {"amera", [](FrameDesc& f) { f.view.camera.viewFromWorld[0] = 2; }},
-        {"amera", [](FrameDesc& f) { std::memset(f.view.camera.clipFromView, 0, 64); }},
     };
+    ASSERT_TRUE(rig.prepare(input).ok());
     for (std::size_t i = 0; i < std::size(cases); ++i) {
         SCOPED_TRACE("case " + std::to_string(i) + " " + cases[i].word);
         FrameDesc frame = rig.frameDesc(input);
@@ -229,10 +406,56 @@ TEST_P(MisuseTest, BeginFrame) {
     checkFrame(input, rig.run(input));
 }
 
-TEST_P(MisuseTest, MissingDepthPyramid) {
-    const FrameInput input = makeQuickFrame({.seed = 41, .widthPx = 16, .heightPx = 16});
-    Rig rig(device(), {.hostDepthPyramid = true}, viewDescFor(input));
+// What is refused leaves the view as it was.
+TEST_P(MisuseTest, Resize) {
+    FrameInput input = smallRoom();
+    const ViewDesc good = viewDescFor(input);
+    Rig rig(device(), {}, good);
     ASSERT_TRUE(rig.ok());
+    struct Case {
+        const char* word;
+        std::function<void(ViewDesc&)> spoil;
+    };
+    const Case cases[] = {
+        {"0x24", [](ViewDesc& d) { d.maxWidthPx = 0; }},
+        {"16384", [](ViewDesc& d) { d.maxHeightPx = 16385; }},
+        {"framesInFlight", [](ViewDesc& d) { d.framesInFlight = 0; }},
+        {"cannot change framesInFlight", [](ViewDesc& d) { d.framesInFlight = 3; }},
+        {"cannot change framesInFlight, guardBytes or statistics", [](ViewDesc& d) { d.statistics = false; }},
+        {"maxShadowViews", [](ViewDesc& d) { d.maxShadowViews = 0; }},
+        {"visibilityBits", [](ViewDesc& d) { d.visibilityBits = 6; }},
+        {"rangeCutoffLux", [](ViewDesc& d) { d.prepare.rangeCutoffLux = 0; }},
+        {"rangeCutoffLux", [](ViewDesc& d) { d.prepare.rangeCutoffLux = 0, d.maxWidthPx = 64; }},
+        {"keepFactor", [](ViewDesc& d) { d.prepare.keepFactor = 0.5f; }},
+    };
+    checkFrame(input, rig.run(input));
+    for (std::size_t i = 0; i < std::size(cases); ++i) {
+        SCOPED_TRACE("case " + std::to_string(i) + " " + cases[i].word);
+        ViewDesc desc = good;
+        cases[i].spoil(desc);
+        expectRefused(rig.resize(desc), cases[i].word);
+    }
+    ViewDesc guarded = good;
+    guarded.guardBytes = 2 * kGuardBytes;
+    expectRefused(rig.view().resize(guarded), "cannot change framesInFlight, guardBytes");
+    checkFrame(input, rig.run(input));
+    // A new extent takes a prepared answer away, and sets another limit.
+    ASSERT_TRUE(rig.prepare(input).ok());
+    ViewDesc smaller = good;
+    smaller.maxWidthPx = 31;
+    ASSERT_TRUE(rig.resize(smaller).ok());
+    expectRefused(rig.view().beginFrame(rig.frameDesc(input)), "View::prepare()");
+    expectRefused(rig.prepare(input), "maximum");
+    ASSERT_TRUE(rig.resize(good).ok());
+    checkFrame(input, rig.run(input));
+}
+
+TEST_P(MisuseTest, MissingDepthPyramid) {
+    FrameInput input = makeQuickFrame({.seed = 41, .widthPx = 16, .heightPx = 16});
+    input.settings.hostDepthPyramid = true;
+    Rig rig(device(), {}, viewDescFor(input));
+    ASSERT_TRUE(rig.ok());
+    ASSERT_TRUE(rig.prepare(input).ok());
     expectRefused(rig.view().beginFrame(rig.frameDesc(input)), "depthPyramid");
 }
 

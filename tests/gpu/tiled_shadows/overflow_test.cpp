@@ -42,15 +42,15 @@ void expectSameButEvaluate(const FrameResult& full, const FrameResult& small) {
 }
 
 TEST_P(OverflowTest, PoolsOfEverySize) {
-    const FrameInput input = crowdedRoom();
+    FrameInput input = crowdedRoom();
+    input.settings.pcssPresets[0] = kPcssLow;
     for (const ListReservation reservation : {ListReservation::Approximate, ListReservation::Accurate}) {
         SCOPED_TRACE(int(reservation));
         const bool halfSlots = reservation == ListReservation::Accurate;
-        const ContextSetup setup{.filter = halfSlots ? Filter::Pcss : Filter::Pcf,
-                                 .pcss = kPcssLow,
-                                 .visibilityBits = halfSlots ? 4u : 8u,
-                                 .reservation = reservation};
-        Rig generous(device(), setup, viewDescFor(input));
+        useFilter(input, halfSlots ? Filter::Pcss : Filter::Pcf);
+        input.settings.visibilityBits = halfSlots ? 4 : 8;
+        input.settings.listReservation = reservation;
+        Rig generous(device(), {}, viewDescFor(input));
         ASSERT_TRUE(generous.ok());
         const FrameResult full = generous.run(input);
         checkFrame(input, full);
@@ -67,7 +67,7 @@ TEST_P(OverflowTest, PoolsOfEverySize) {
             ViewDesc desc = viewDescFor(input);
             desc.listEntries = pools.entries;
             desc.visibilitySlots = pools.slots;
-            Rig rig(device(), setup, desc);
+            Rig rig(device(), {}, desc);
             ASSERT_TRUE(rig.ok());
             const FrameResult small = rig.run(input);
             EXPECT_EQ(small.listCapacity, pools.entries / 3 * 3);
@@ -89,15 +89,18 @@ TEST_P(OverflowTest, PoolsOfEverySize) {
 }
 
 TEST_P(OverflowTest, FixedEntriesTooFew) {
-    const FrameInput input = crowdedRoom();
-    Rig generous(device(), {.reservation = ListReservation::Fixed, .fixedEntries = 90}, viewDescFor(input));
+    FrameInput input = crowdedRoom();
+    input.settings.listReservation = ListReservation::Fixed;
+    input.settings.fixedListEntriesPerTile = 90;
+    Rig generous(device(), {}, viewDescFor(input));
     ASSERT_TRUE(generous.ok());
     const FrameResult full = generous.run(input);
     for (const std::uint32_t fixed : {1u, 4u, 12u}) {
         SCOPED_TRACE(fixed);
         ViewDesc desc = viewDescFor(input);
         if (fixed == 12) desc.listEntries = 500;  // and the pool ends within the frame
-        Rig rig(device(), {.reservation = ListReservation::Fixed, .fixedEntries = fixed}, desc);
+        input.settings.fixedListEntriesPerTile = fixed;
+        Rig rig(device(), {}, desc);
         ASSERT_TRUE(rig.ok());
         const FrameResult small = rig.run(input);
         checkFrame(input, small, {.bytes = false, .listOverflow = true});

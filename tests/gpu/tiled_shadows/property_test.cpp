@@ -44,7 +44,6 @@ FrameInput randomFrame(std::uint64_t seed) {
     lights.spreadMetres = random.uniform(1, 20);
     input.lights = reference::makeLights(random, setup.camera, lights);
     for (Light& light : input.lights) {
-        if (light.firstShadowView != kNoShadowViews) light.firstShadowView = 0;
         if (light.type == LightType::Spot && random.chance(0.5))
             light.outerConeAngle = static_cast<float>(std::exp(random.uniform(std::log(5e-4), std::log(1.55))));
         if (random.chance(0.1)) light.rangeMetres = static_cast<float>(std::exp(random.uniform(-3, 8)));
@@ -61,11 +60,12 @@ FrameInput randomFrame(std::uint64_t seed) {
     input.camera = reference::makeCamera(setup.camera, setup.widthPx, setup.heightPx);
     input.receivers = reference::renderReceivers(shapes, input.camera, setup.widthPx, setup.heightPx);
     input.shadows = sharedPlainShadows();
+    input.lightViews = sharedViews(input.lights);
     Light sun;
     sun.type = LightType::Directional;
     for (std::uint32_t i = random.below(3); i > 0; --i) input.lights.push_back(sun);
     input.viewportXPx = random.below(24);
-    input.dropLightsFacedAway = random.chance(0.5);
+    input.settings.dropLightsFacedAway = random.chance(0.5);
     return input;
 }
 
@@ -80,16 +80,17 @@ TEST_P(PropertyTest, NoLightIsEverLost) {
     std::uint64_t done = 0;
     std::size_t must = 0, may = 0, bytes = 0;
     const auto start = std::chrono::steady_clock::now();
-    Rig approximate(device(),
-                    {.filter = Filter::Pcss, .pcss = kPcssLow, .reservation = ListReservation::Approximate}, desc);
-    Rig accurate(device(), {.filter = Filter::Hard, .reservation = ListReservation::Accurate}, desc);
+    Rig approximate(device(), {}, desc), accurate(device(), {}, desc);
     ASSERT_TRUE(approximate.ok() && accurate.ok());
     for (std::uint64_t seed = 1; seed <= seeds && !HasFailure(); ++seed, ++done) {
         // Lavapipe compiles two shaders anew for most cameras, half a second each time unless Mesa's cache on disk
         // has them.
         if (!fullRun() && done >= 30 && std::chrono::steady_clock::now() - start > std::chrono::seconds(12)) break;
         SCOPED_TRACE("seed " + std::to_string(seed));
-        const FrameInput input = randomFrame(seed);
+        FrameInput input = randomFrame(seed);
+        useFilter(input, seed % 2 == 0 ? Filter::Pcss : Filter::Hard);
+        input.settings.pcssPresets[0] = kPcssLow;
+        input.settings.listReservation = seed % 2 == 0 ? ListReservation::Approximate : ListReservation::Accurate;
         Rig& rig = seed % 2 == 0 ? approximate : accurate;
         const FrameResult result = rig.run(input);
         const Checked checked = checkFrame(input, result, {.bytes = seed % 4 < 2});
@@ -116,10 +117,14 @@ TEST_P(PropertyTest, RandomOverflow) {
         desc.maxShadowViews = 6;
         const auto reservation = static_cast<ListReservation>(random.below(3));
         const std::uint32_t bits = random.chance(0.5) ? 4 : 8;
-        Rig rig(device(), {.visibilityBits = bits, .reservation = reservation, .fixedEntries = 10}, desc);
+        desc.visibilityBits = bits;
+        Rig rig(device(), {}, desc);
         ASSERT_TRUE(rig.ok());
         for (std::uint64_t i = 0; i < 3; ++i) {
-            const FrameInput input = randomFrame(seed * 100 + i);
+            FrameInput input = randomFrame(seed * 100 + i);
+            input.settings.visibilityBits = bits;
+            input.settings.listReservation = reservation;
+            input.settings.fixedListEntriesPerTile = 10;
             checkFrame(input, rig.run(input), {.bytes = false, .listOverflow = true, .slotOverflow = true});
         }
     }

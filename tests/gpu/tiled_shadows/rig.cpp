@@ -104,21 +104,22 @@ reference::ListBuffers FrameResult::lists() const {
     out.visibility = visibility;
     out.listEntries = listCapacity;
     out.visibilitySlots = slotCapacity;
-    out.reservation = setup.reservation == ListReservation::Approximate ? gpu::kReserveApproximate
-                      : setup.reservation == ListReservation::Accurate  ? gpu::kReserveAccurate
-                                                                        : gpu::kReserveFixed;
-    out.fixedEntries = setup.fixedEntries;
-    out.visibilityBits = setup.visibilityBits;
+    out.reservation = settings.listReservation == ListReservation::Approximate ? gpu::kReserveApproximate
+                      : settings.listReservation == ListReservation::Accurate  ? gpu::kReserveAccurate
+                                                                               : gpu::kReserveFixed;
+    out.fixedEntries = settings.fixedListEntriesPerTile;
+    out.visibilityBits = settings.visibilityBits;
     return out;
 }
 
-Rig::Rig(TestDevice& device, const ContextSetup& setup, const ViewDesc& desc)
-    : device_(device), setup_(setup), desc_(desc) {
+Rig::Rig(TestDevice& device, const ContextSetup& setup, const ViewDesc& desc) : device_(device), desc_(desc) {
     desc_.guardBytes = kGuardBytes;
     const Context* context = device.context(setup);
     if (context == nullptr) return;
     const Result made = View::create(*context, desc_, view_);
     EXPECT_TRUE(made.ok()) << made.message();
+    const Result timed = Timeline::create(*context, {.framesInFlight = desc_.framesInFlight}, timeline_);
+    EXPECT_TRUE(timed.ok()) << timed.message();
 }
 
 Rig::~Rig() {
@@ -150,38 +151,60 @@ void Rig::makeImages(const FrameInput& input) {
     }
 }
 
+ViewInput Rig::viewInput(const FrameInput& input) {
+    ViewInput view;
+    view.camera = input.camera;
+    view.widthPx = input.widthPx;
+    view.heightPx = input.heightPx;
+    view.viewportXPx = input.viewportXPx;
+    view.viewportYPx = input.viewportYPx;
+    view.lights = input.lights;
+    return view;
+}
+
+Result Rig::prepare(const FrameInput& input) {
+    return view_->prepare(viewInput(input), answer_);
+}
+
+Result Rig::resize(const ViewDesc& desc) {
+    ViewDesc wanted = desc;
+    wanted.guardBytes = kGuardBytes;
+    Result resized = view_->resize(wanted);
+    if (!resized) return resized;
+    dropImages();
+    desc_ = wanted;
+    return resized;
+}
+
 FrameDesc Rig::frameDesc(const FrameInput& input) {
     makeImages(input);
     FrameDesc frame;
     frame.frameNumber = nextFrame_;
-    frame.view.camera = input.camera;
-    frame.view.widthPx = input.widthPx;
-    frame.view.heightPx = input.heightPx;
-    frame.view.viewportXPx = input.viewportXPx;
-    frame.view.viewportYPx = input.viewportYPx;
-    frame.view.lights = input.lights;
+    frame.settings = input.settings;
+    views_.clear();
+    for (const LightOnScreen& light : answer_.visible)
+        views_.push_back(light.light < input.lightViews.size() ? input.lightViews[light.light] : LightShadowViews{});
+    frame.lightViews = views_;
     if (shadows_ != nullptr) frame.shadowViews = shadows_->views;
     if (shadows_ != nullptr && !input.shadowViewsChanged) {
         unchangedViews_ = shadows_->views;
         for (ShadowView& view : unchangedViews_) view.changed = false;
         frame.shadowViews = unchangedViews_;
     }
-    frame.shadowBounds = input.shadowBounds;
     frame.depth.view = depth_.view();
     if (!input.receivers.faceNormals.empty()) frame.faceNormals.view = faceNormals_.view();
     if (!input.receivers.receiverFlags.empty()) frame.receiverFlags.view = receiverFlags_.view();
     if (!input.depthPyramid.empty()) frame.depthPyramid.view = pyramid_.view();
     frame.atlases = atlasDescs_;
-    frame.subsurfaceBiasMetres = input.subsurfaceBiasMetres;
-    frame.patternPerFrame = input.patternPerFrame;
     frame.depthStep = static_cast<float>(input.receivers.depthStep);
-    frame.dropLightsFacedAway = input.dropLightsFacedAway;
+    if (withTimeline_) frame.timeline = timeline_.get();
     return frame;
 }
 
 Result Rig::begin(const FrameInput& input, PrepareReport* report) {
+    if (Result prepared = prepare(input); !prepared) return prepared;
     const Result begun = view_->beginFrame(frameDesc(input), report);
-    shadowBounds_ = input.shadowBounds;
+    settings_ = input.settings;
     boundsKept_ = !input.shadowViewsChanged;
     if (begun) ++nextFrame_;
     return begun;
@@ -222,11 +245,12 @@ void Rig::recordFill(VkCommandBuffer commands) const {
     barrier(commands, renderer::access::kTransferWrite, kAll);
 }
 
-void Rig::recordPhases(VkCommandBuffer commands, const RunOptions& options) const {
+void Rig::recordPhases(VkCommandBuffer commands, const RunOptions& options) {
+    if (withTimeline_) timeline_->beginFrame(commands, lastFrame());
     view_->recordHierarchicalDepth(commands);
     view_->recordFindLightsApproximate(commands);
     view_->recordFindLightsAccurate(commands);
-    if (shadowBounds_) view_->recordShadowBounds(commands);
+    if (settings_.shadowBounds) view_->recordShadowBounds(commands);
     if (options.shadows) view_->recordGenerateShadows(commands);
     if (options.endFrame) view_->recordEndFrame(commands);
 }
@@ -234,9 +258,7 @@ void Rig::recordPhases(VkCommandBuffer commands, const RunOptions& options) cons
 void Rig::recordReadback(VkCommandBuffer commands) {
     ranges_.clear();
     VkDeviceSize total = 0;
-    const MemoryReport& memory = view_->memory();
-    for (std::uint32_t i = 0; i < memory.bufferCount; ++i) {
-        const BufferMemory& buffer = memory.buffers[i];
+    for (const BufferMemory& buffer : view_->memory().buffers()) {
         if (view_->buffer(buffer.name) == VK_NULL_HANDLE) continue;
         const bool guarded = !buffer.perFrame;
         const VkDeviceSize bytes = buffer.bytes + (guarded ? 2 * kGuardBytes : 0);
@@ -305,13 +327,20 @@ void Rig::decode(FrameResult& r) const {
     r.shadowBounds.resize(bounds.size() / 2);
     std::memcpy(r.shadowBounds.data(), bounds.data(), bounds.size() * 4);
     r.listCapacity = view_->memory().listEntries;
-    r.slotCapacity = view_->memory().visibilitySlots;
-    r.setup = setup_;
+    r.settings = settings_;
+    // The pool counts slots of its own bits.
+    r.slotCapacity = view_->memory().visibilitySlots * desc_.visibilityBits / settings_.visibilityBits;
+    EXPECT_EQ(r.constants.slotCapacity, r.slotCapacity);
+    EXPECT_EQ(r.constants.listCapacity, r.listCapacity);
+    r.answer.assign(answer_.visible.begin(), answer_.visible.end());
+    r.answerReport = answer_.report;
+    r.tileLightMasks = contents("tile_light_masks");
 }
 
 FrameResult Rig::run(const FrameInput& input, const RunOptions& options) {
     FrameResult result;
     if (!ok()) return result;
+    withTimeline_ = options.timeline;
     const Result begun = begin(input, &result.report);
     EXPECT_TRUE(begun.ok()) << begun.message();
     if (!begun) return result;
@@ -323,11 +352,18 @@ FrameResult Rig::run(const FrameInput& input, const RunOptions& options) {
     });
     decode(result);
     result.hasStatistics = view_->statistics(lastFrame(), result.statistics);
+    const std::span<const TimelineRow> rows = timeline_->rows(lastFrame());
+    result.rows.assign(rows.begin(), rows.end());
+    if (result.hasStatistics) {
+        EXPECT_EQ(result.statistics.listCapacity, result.listCapacity);
+        EXPECT_EQ(result.statistics.slotCapacity, result.slotCapacity);
+    }
     if (!options.fill) result.beyondTiles = 0;
     return result;
 }
 
 void Rig::runInFlight(const std::vector<FrameInput>& inputs) {
+    withTimeline_ = true;
     std::vector<std::unique_ptr<renderer::Commands>> submissions;
     for (const FrameInput& input : inputs) {
         const Result begun = begin(input);

@@ -4,6 +4,21 @@ namespace gnomon::test {
 
 using namespace reference;
 
+void useFilter(FrameInput& input, Filter filter) {
+    for (Light& light : input.lights) light.filter = filter;
+    input.settings.filters = only(filter);
+}
+
+namespace {
+
+void takeLights(FrameInput& input, const RoomSetup& setup, Random& random) {
+    input.lights = makeLights(random, setup.camera, setup.lights);
+    input.settings.filters = setup.lights.filters;
+    input.settings.pcssPresetCount = setup.lights.pcssPresets;
+}
+
+}  // namespace
+
 void renderRoom(FrameInput& input, const RoomSetup& setup) {
     Random random(setup.seed);
     input.widthPx = setup.widthPx;
@@ -19,8 +34,9 @@ FrameInput makeRoomFrame(const RoomSetup& setup) {
     input.widthPx = setup.widthPx;
     input.heightPx = setup.heightPx;
     input.camera = makeCamera(setup.camera, setup.widthPx, setup.heightPx);
-    input.lights = makeLights(random, setup.camera, setup.lights);
+    takeLights(input, setup, random);
     input.shadows = std::make_shared<TestShadows>(buildShadows(shapes, input.lights, setup.shadows));
+    input.lightViews = input.shadows->lightViews;
     input.receivers = renderReceivers(shapes, input.camera, setup.widthPx, setup.heightPx);
     return input;
 }
@@ -28,7 +44,6 @@ FrameInput makeRoomFrame(const RoomSetup& setup) {
 std::shared_ptr<const TestShadows> sharedPlainShadows() {
     static const auto shared = [] {
         Light light;
-        light.firstShadowView = 0;
         light.position[1] = 2.5f;
         ShadowSetup setup;
         setup.viewSizePx = 8;
@@ -39,6 +54,14 @@ std::shared_ptr<const TestShadows> sharedPlainShadows() {
     return shared;
 }
 
+std::vector<LightShadowViews> sharedViews(const std::vector<Light>& lights) {
+    std::vector<LightShadowViews> views(lights.size());
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        if (lights[i].casts && lights[i].type != LightType::Directional)
+            views[i] = {0, lights[i].type == LightType::Point ? gpu::kPointLightFaces : 1};
+    return views;
+}
+
 FrameInput makeQuickFrame(const RoomSetup& setup) {
     FrameInput input;
     Random random(setup.seed);
@@ -46,9 +69,8 @@ FrameInput makeQuickFrame(const RoomSetup& setup) {
     input.widthPx = setup.widthPx;
     input.heightPx = setup.heightPx;
     input.camera = makeCamera(setup.camera, setup.widthPx, setup.heightPx);
-    input.lights = makeLights(random, setup.camera, setup.lights);
-    for (Light& light : input.lights)
-        if (light.firstShadowView != kNoShadowViews) light.firstShadowView = 0;
+    takeLights(input, setup, random);
+    input.lightViews = sharedViews(input.lights);
     input.shadows = sharedPlainShadows();
     input.receivers = renderReceivers(shapes, input.camera, setup.widthPx, setup.heightPx);
     return input;
@@ -69,6 +91,7 @@ ViewDesc viewDescFor(const FrameInput& input) {
     }
     desc.listEntries = tiles * 96;
     desc.visibilitySlots = tiles * 48;
+    desc.visibilityBits = input.settings.visibilityBits;
     return desc;
 }
 

@@ -15,16 +15,22 @@ struct RoomSetup {
     std::uint32_t objects = 12;
 };
 
-/// A room with furniture, lights and real atlases.
+/// All lights have this filter, and the frame's pipelines the code of no other.
+void useFilter(FrameInput& input, Filter filter);
+
+/// A room with furniture, lights and real atlases. The frame's settings have the filters and presets of the lights.
 [[nodiscard]] FrameInput makeRoomFrame(const RoomSetup& setup);
 
 /// The same without atlas content worth looking at: every caster shares six small views. Quick to make.
 [[nodiscard]] FrameInput makeQuickFrame(const RoomSetup& setup);
 [[nodiscard]] std::shared_ptr<const reference::TestShadows> sharedPlainShadows();
+/// The shared views for every point and spot that casts.
+[[nodiscard]] std::vector<LightShadowViews> sharedViews(const std::vector<Light>& lights);
 
 /// Renders the room anew for the frame's camera and extent, as after a change of either.
 void renderRoom(FrameInput& input, const RoomSetup& setup);
 
+/// Pools that hold the frame; slots are counted in the frame's bits.
 [[nodiscard]] ViewDesc viewDescFor(const FrameInput& input);
 
 }  // namespace gnomon::test

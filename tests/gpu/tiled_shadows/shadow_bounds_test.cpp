@@ -103,8 +103,9 @@ TEST_P(ShadowBoundsTest, EveryBlockOfEveryLevel) {
     FrameInput input = makeRoomFrame({.seed = 3, .widthPx = 16, .heightPx = 16});
     input.lights.clear();
     input.shadows = shadows;
-    input.shadowBounds = true;
-    Rig rig(device(), {.filter = Filter::Pcss}, viewDescFor(input));
+    input.settings.shadowBounds = true;
+    useFilter(input, Filter::Pcss);
+    Rig rig(device(), {}, viewDescFor(input));
     ASSERT_TRUE(rig.ok());
     const FrameResult result = rig.run(input);
     EXPECT_EQ(result.brokenGuards, 0u);
@@ -116,27 +117,29 @@ TEST_P(ShadowBoundsTest, EveryBlockOfEveryLevel) {
     // What is kept is not made again, but for views that have changed.
     input.shadowViewsChanged = false;
     EXPECT_EQ(compareAll(*shadows, rig.run(input)).different, 0u);
-    if (device().vulkan().timestampPeriodNs() > 0) {
-        const FrameStatistics last = rig.run(input).statistics;
-        for (std::uint32_t p = 0; p < last.passCount; ++p) EXPECT_STRNE(last.passes[p].name, "shadow_bounds");
-    }
+    const auto madeBounds = [](const FrameResult& frame) {
+        return std::ranges::any_of(frame.rows, [](const TimelineRow& row) { return row.phase == Phase::ShadowBounds; });
+    };
+    EXPECT_EQ(madeBounds(result), rig.timeline().records());
+    EXPECT_FALSE(madeBounds(rig.run(input)));
 }
 
 // A frame with larger atlases than the view has bounds for does without them.
 TEST_P(ShadowBoundsTest, AtlasesThatDoNotFit) {
     RoomSetup setup{.seed = 14, .widthPx = 40, .heightPx = 32};
     setup.lights.castingShare = 1;
+    setup.lights.filters = only(Filter::Pcss);
     FrameInput input = makeRoomFrame(setup);
     ViewDesc desc = viewDescFor(input);
-    Rig whole(device(), {.filter = Filter::Pcss}, desc);
+    Rig whole(device(), {}, desc);
     desc.shadowBoundsTexels -= 1;  // one cell fewer
     desc.shadowBoundsTexels -= desc.shadowBoundsTexels % 65536;
-    Rig less(device(), {.filter = Filter::Pcss}, desc);
+    Rig less(device(), {}, desc);
     desc.shadowBoundsTexels = 0;
-    Rig none(device(), {.filter = Filter::Pcss}, desc);
+    Rig none(device(), {}, desc);
     ASSERT_TRUE(whole.ok() && less.ok() && none.ok());
     const auto expected = decodeFinalLists(whole.run(input));
-    input.shadowBounds = true;
+    input.settings.shadowBounds = true;
     for (Rig* rig : {&whole, &less, &none}) {
         EXPECT_EQ(decodeFinalLists(rig->run(input)), expected);
         input.shadowViewsChanged = false;
@@ -157,12 +160,12 @@ TEST_P(ShadowBoundsTest, SameBitsWithAndWithout) {
                          .infiniteFar = seed % 2 == 0};
         setup.objects = 20;
         FrameInput input = makeRoomFrame(setup);
-        input.patternPerFrame = false;
-        const PcssTaps taps = seed % 2 == 0 ? PcssTaps{3, 4} : kPcssMedium;
-        Rig rig(device(), {.filter = Filter::Pcss, .pcss = taps}, viewDescFor(input));
+        useFilter(input, Filter::Pcss);
+        input.settings.pcssPresets[0] = seed % 2 == 0 ? PcssTaps{3, 4} : kPcssMedium;
+        Rig rig(device(), {}, viewDescFor(input));
         ASSERT_TRUE(rig.ok());
         const FrameResult plain = rig.run(input);
-        input.shadowBounds = true;
+        input.settings.shadowBounds = true;
         const FrameResult bounded = rig.run(input);
         EXPECT_EQ(decodeFinalLists(plain), decodeFinalLists(bounded));
         slots += plain.statistics.finalSlotEntries;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "checks.h"
 #include "scenes.h"
@@ -12,8 +13,10 @@ namespace {
 class ShadowsTest : public GpuTest {};
 GNOMON_ON_EVERY_DEVICE(ShadowsTest);
 
+constexpr std::optional<Filter> kOff;  // no filter in use: everything is lit
+
 struct FilterCase {
-    Filter filter;
+    std::optional<Filter> filter;
     std::uint32_t radius;
     PcssTaps taps;
     std::uint32_t bits;
@@ -22,16 +25,20 @@ struct FilterCase {
 constexpr FilterCase kFilters[] = {
     {Filter::Hard, 1, {}, 8, 0.001, 0.001},        {Filter::Hard, 1, {}, 4, 0.001, 0.001},
     {Filter::Pcf, 1, {}, 8, 0.006, 0.001},         {Filter::Pcf, 2, {}, 4, 0.001, 0.001},
-    {Filter::Pcf, 3, {}, 8, 0.006, 0.001},         {Filter::Off, 1, {}, 8, 0.0, 0.0},
+    {Filter::Pcf, 3, {}, 8, 0.006, 0.001},         {kOff, 1, {}, 8, 0.0, 0.0},
     {Filter::Pcss, 1, kPcssMedium, 8, 0.01, 0.001}, {Filter::Pcss, 1, kPcssHigh, 8, 0.01, 0.001},
     {Filter::Pcss, 1, kPcssLow, 4, 0.001, 0.001},  {Filter::Pcss, 1, {1, 1}, 8, 0.01, 0.001}};
 
-void checkFilter(TestDevice& device, const FrameInput& input, const FilterCase& filter) {
-    SCOPED_TRACE("filter " + std::to_string(int(filter.filter)) + " radius " + std::to_string(filter.radius) +
+void checkFilter(TestDevice& device, FrameInput input, const FilterCase& filter) {
+    const int number = filter.filter ? int(*filter.filter) : -1;
+    SCOPED_TRACE("filter " + std::to_string(number) + " radius " + std::to_string(filter.radius) +
                  " search taps " + std::to_string(filter.taps.searchTaps) + " bits " + std::to_string(filter.bits));
-    Rig rig(device,
-            {.filter = filter.filter, .pcfRadius = filter.radius, .pcss = filter.taps, .visibilityBits = filter.bits},
-            viewDescFor(input));
+    useFilter(input, filter.filter.value_or(Filter::Pcf));
+    if (!filter.filter) input.settings.filters = 0;
+    input.settings.pcfRadius = filter.radius;
+    input.settings.pcssPresets[0] = filter.taps;
+    input.settings.visibilityBits = filter.bits;
+    Rig rig(device, {}, viewDescFor(input));
     ASSERT_TRUE(rig.ok());
     const Checked checked = checkFrame(input, rig.run(input));
     const reference::ShadowReport& s = checked.shadows;
@@ -40,12 +47,12 @@ void checkFilter(TestDevice& device, const FrameInput& input, const FilterCase& 
     EXPECT_LE(s.looseShare(), filter.mostLoose);
     EXPECT_EQ(s.wrongBytes, 0u);
     EXPECT_GT(s.allLit, 20u);
-    if (filter.filter != Filter::Off) {
+    if (filter.filter) {
         EXPECT_GT(s.slots, 20u);
         EXPECT_GT(s.absent, 3u);
         EXPECT_GT(s.exactBytes, s.bytes / 2);
     }
-    std::printf("    filter %d: pairs %zu ambiguous %.4f loose %.4f slots %zu lit %zu absent %zu\n", int(filter.filter),
+    std::printf("    filter %d: pairs %zu ambiguous %.4f loose %.4f slots %zu lit %zu absent %zu\n", number,
                 s.pairs, s.ambiguousShare(), s.looseShare(), s.slots, s.allLit, s.absent);
 }
 
@@ -58,7 +65,7 @@ TEST_P(ShadowsTest, EveryFilter) {
     input.lights.back().shadowFadeStartMetres = 4;
     input.lights.back().shadowFadeEndMetres = 9;
     for (const FilterCase& filter : kFilters) {
-        input.patternPerFrame = filter.bits == 8;
+        input.settings.patternPerFrame = filter.bits == 8;
         checkFilter(device(), input, filter);
     }
 }
@@ -90,9 +97,12 @@ TEST_P(ShadowsTest, EveryDepthBias) {
     for (const Mode& mode : kModes) {
         SCOPED_TRACE("bias " + std::to_string(int(mode.bias)) + " faced away is dark: " +
                      std::to_string(mode.facedAwayIsDark) + " filter " + std::to_string(int(mode.filter)));
-        Rig rig(device(),
-                {.filter = mode.filter, .depthBias = mode.bias, .facedAwayIsDark = mode.facedAwayIsDark},
-                viewDescFor(input));
+        for (FrameInput* frame : {&input, &nothing}) {
+            useFilter(*frame, mode.filter);
+            frame->settings.depthBias = mode.bias;
+            frame->settings.facedAwayIsDark = mode.facedAwayIsDark;
+        }
+        Rig rig(device(), {}, viewDescFor(input));
         ASSERT_TRUE(rig.ok());
         const FrameResult result = rig.run(input);
         const Checked checked = checkFrame(input, result);
@@ -113,8 +123,9 @@ TEST_P(ShadowsTest, UnbiasedWithoutFaceNormals) {
     RoomSetup setup{.seed = 15, .widthPx = 40, .heightPx = 32};
     setup.lights.castingShare = 1.0;
     FrameInput input = makeRoomFrame(setup);
-    const ContextSetup unbiased{.filter = Filter::Pcf, .depthBias = DepthBias::Unbiased, .facedAwayIsDark = false};
-    Rig rig(device(), unbiased, viewDescFor(input));
+    input.settings.depthBias = DepthBias::Unbiased;
+    input.settings.facedAwayIsDark = false;
+    Rig rig(device(), {}, viewDescFor(input));
     ASSERT_TRUE(rig.ok());
     const FrameResult with = rig.run(input);
     input.receivers.faceNormals.clear();
@@ -129,10 +140,11 @@ TEST_P(ShadowsTest, UnbiasedWithoutFaceNormals) {
 TEST_P(ShadowsTest, CoarseDepthImages) {
     RoomSetup setup{.seed = 16, .widthPx = 48, .heightPx = 40};
     setup.lights.castingShare = 1.0;
+    setup.lights.filters = only(Filter::Hard);
     FrameInput input = makeRoomFrame(setup);
     const auto lit = [&](double step) {
         input.receivers.depthStep = step;
-        Rig rig(device(), {.filter = Filter::Hard}, viewDescFor(input));
+        Rig rig(device(), {}, viewDescFor(input));
         if (!rig.ok()) return std::size_t{0};
         const Checked checked = checkFrame(input, rig.run(input));
         EXPECT_LT(checked.shadows.ambiguousShare(), 0.02);
@@ -151,6 +163,7 @@ TEST_P(ShadowsTest, CoarseShadowAtlases) {
     setup.shadows.reversed = false;
     setup.shadows.infiniteFar = false;
     setup.shadows.nearMetres = 0.02;
+    setup.lights.filters = only(Filter::Hard);
     FrameInput input = makeRoomFrame(setup);
     constexpr double kStep = 1.0 / 65535.0;
     auto lit = [&](double step) {
@@ -162,7 +175,7 @@ TEST_P(ShadowsTest, CoarseShadowAtlases) {
         }
         FrameInput stepped = input;
         stepped.shadows = coarse;
-        Rig rig(device(), {.filter = Filter::Hard}, viewDescFor(input));
+        Rig rig(device(), {}, viewDescFor(input));
         if (!rig.ok()) return std::size_t{0};
         const Checked checked = checkFrame(stepped, rig.run(stepped));
         EXPECT_LT(checked.shadows.ambiguousShare(), 0.02);
@@ -188,11 +201,13 @@ TEST_P(ShadowsTest, RandomRooms) {
         setup.shadows.viewSizePx = 12 + random.below(60);
         setup.shadows.infiniteFar = random.chance(0.5);
         setup.shadows.borderTexels = random.below(4);
+        setup.lights.filters = only(Filter::Pcss);
         FrameInput input = makeRoomFrame(setup);
-        input.shadowBounds = seed % 2 != 0;
         const PcssTaps presets[] = {kPcssLow, kPcssMedium, kPcssHigh};
-        Rig rig(device(), {.filter = Filter::Pcss, .pcss = presets[seed % 3], .visibilityBits = seed % 2 == 0 ? 4u : 8u},
-                viewDescFor(input));
+        input.settings.shadowBounds = seed % 2 != 0;
+        input.settings.pcssPresets[0] = presets[seed % 3];
+        input.settings.visibilityBits = seed % 2 == 0 ? 4 : 8;
+        Rig rig(device(), {}, viewDescFor(input));
         ASSERT_TRUE(rig.ok());
         const Checked checked = checkFrame(input, rig.run(input));
         pairs += checked.shadows.pairs;
@@ -211,15 +226,15 @@ TEST_P(ShadowsTest, ShadowBounds) {
     setup.lights = {.count = 12, .castingShare = 1, .maxRangeMetres = 9, .spreadMetres = 5, .suns = 2};
     setup.lights.maxSourceRadius = 0.4;
     setup.shadows = {.viewSizePx = 90, .mixDepthKinds = true};
+    setup.lights.filters = only(Filter::Pcss);
     FrameInput input = makeRoomFrame(setup);
-    Rig plain(device(), {.filter = Filter::Pcss}, viewDescFor(input));
-    Rig bounded(device(), {.filter = Filter::Pcss}, viewDescFor(input));
+    Rig plain(device(), {}, viewDescFor(input)), bounded(device(), {}, viewDescFor(input));
     ASSERT_TRUE(plain.ok() && bounded.ok());
     for (const bool changed : {true, false}) {
-        input.shadowBounds = false;
+        input.settings.shadowBounds = false;
         const FrameResult result = plain.run(input);
         if (changed) checkFrame(input, result);
-        input.shadowBounds = true;
+        input.settings.shadowBounds = true;
         input.shadowViewsChanged = changed;
         EXPECT_EQ(decodeFinalLists(result), decodeFinalLists(bounded.run(input))) << "changed " << changed;
     }
@@ -231,7 +246,7 @@ TEST_P(ShadowsTest, ShadowBounds) {
     input.shadowViewsChanged = true;
     const FrameResult result = bounded.run(input);
     checkFrame(input, result);
-    input.shadowBounds = false;
+    input.settings.shadowBounds = false;
     EXPECT_EQ(decodeFinalLists(result), decodeFinalLists(plain.run(input)));
 }
 
@@ -244,10 +259,12 @@ TEST_P(ShadowsTest, EveryKindOfShadowView) {
         for (const bool reversed : {true, false}) {
             setup.shadows = {.viewSizePx = size, .cellsPerRow = 5, .atlasCount = 4, .layers = 3, .reversed = reversed,
                              .infiniteFar = false};
-            const FrameInput input = makeRoomFrame(setup);
+            FrameInput input = makeRoomFrame(setup);
+            input.settings.pcfRadius = size == 8 ? 3 : 2;
+            input.settings.pcssPresets[0] = kPcssLow;
             for (const Filter filter : {Filter::Pcf, Filter::Pcss}) {
-                Rig rig(device(), {.filter = filter, .pcfRadius = size == 8 ? 3u : 2u, .pcss = kPcssLow},
-                        viewDescFor(input));
+                useFilter(input, filter);
+                Rig rig(device(), {}, viewDescFor(input));
                 ASSERT_TRUE(rig.ok());
                 const Checked checked = checkFrame(input, rig.run(input));
                 EXPECT_LT(checked.shadows.ambiguousShare(), 0.03);
@@ -280,8 +297,7 @@ TEST_P(ShadowsTest, OblongCascades) {
         light.direction[1] = static_cast<float>(direction.y);
         light.direction[2] = static_cast<float>(direction.z);
         light.sourceRadius = 0.1f;
-        light.cascadeCount = 1;
-        light.firstShadowView = static_cast<std::uint32_t>(shadows->views.size());
+        input.lightViews.push_back({static_cast<std::uint32_t>(shadows->views.size()), 1});
         input.lights.push_back(light);
         ShadowView view = reference::makeShadowView({reversed ? 1.0 : -1.0, 6, 0}, direction, down, 5.0, 0.1, 10.0, true,
                                                     reversed);
@@ -294,7 +310,9 @@ TEST_P(ShadowsTest, OblongCascades) {
     }
     input.shadows = shadows;
     for (const Filter filter : {Filter::Hard, Filter::Pcf, Filter::Pcss}) {
-        Rig rig(device(), {.filter = filter, .pcfRadius = 2, .maxShadowAtlases = 1}, viewDescFor(input));
+        useFilter(input, filter);
+        input.settings.pcfRadius = 2;
+        Rig rig(device(), {.maxShadowAtlases = 1}, viewDescFor(input));
         ASSERT_TRUE(rig.ok());
         const Checked checked = checkFrame(input, rig.run(input));
         EXPECT_LT(checked.shadows.ambiguousShare(), 0.03);
@@ -307,6 +325,7 @@ TEST_P(ShadowsTest, HostProvider) {
     RoomSetup setup{.seed = 9};
     setup.lights.castingShare = 1;
     setup.lights.fadingShare = 0;
+    setup.lights.filters = only(Filter::Host);
     const FrameInput input = makeRoomFrame(setup);
     Rig rig(device(), {.hostProvider = true}, viewDescFor(input));
     ASSERT_TRUE(rig.ok());

@@ -187,8 +187,9 @@ TEST(BadExtent, EachHasItsSentence) {
     EXPECT_NE(message(100, 51).find("above the maximum"), std::string::npos);
     EXPECT_EQ(message(100, 50), "");
     input.widthPx = input.heightPx = 10;
-    PrepareReport report;
-    EXPECT_NE(std::string(prepare->run(input, {}, report).message()).find("null pointer"), std::string::npos);
+    PreparedLights answer;
+    ASSERT_TRUE(prepare->run(input, answer).ok());
+    EXPECT_NE(std::string(prepare->write({}, 0, {}).message()).find("null pointer"), std::string::npos);
 }
 
 TEST(BadDesc, EachHasItsSentence) {

@@ -46,7 +46,8 @@ TEST(Lists, NoLights) {
 
 TEST(Lists, OneLight) {
     Light light = pointAt(1, 2, -10, 3);
-    light.sourceRadius = 0.25f, light.mask = 0x0F, light.biasMetres = 0.004f, light.firstShadowView = 6;
+    light.sourceRadius = 0.25f, light.mask = 0x0F, light.biasMetres = 0.004f, light.filter = Filter::Pcf,
+    light.pcssPreset = 3;
     const Prepared p = runLights({light});
     ASSERT_TRUE(p.result.ok()) << p.result.message();
     ASSERT_EQ(p.lights.size(), 1u);
@@ -61,8 +62,9 @@ TEST(Lists, OneLight) {
     EXPECT_EQ(g.sourceRadius, 0.25f);
     EXPECT_EQ(g.lightMask, 0x0Fu);
     EXPECT_EQ(g.biasMetres, 0.004f);
-    EXPECT_EQ(g.typeAndFlags, gpu::kLightPoint | gpu::kLightCastsBit);
-    EXPECT_EQ(g.shadowView, 6u);
+    EXPECT_EQ(g.typeAndFlags, gpu::kLightPoint | gpu::kLightCastsBit | gpu::kFilterPcf << gpu::kLightFilterShift |
+                                  3u << gpu::kLightPcssPresetShift);
+    EXPECT_EQ(g.shadowView, 0u);
     EXPECT_EQ(g.lightFade, 1.0f);
     EXPECT_EQ(g.shadowFade, 1.0f);
     EXPECT_EQ(p.report.casting, 1u);
@@ -75,7 +77,7 @@ TEST(Lists, OneSpot) {
     Light light = pointAt(0, 0, -10, 3);
     light.type = LightType::Spot;
     light.direction[0] = 0, light.direction[1] = 0, light.direction[2] = -4;
-    light.outerConeAngle = 0.5f, light.firstShadowView = 999;
+    light.outerConeAngle = 0.5f, light.filter = Filter::Hard;
     const Prepared p = runLights({light});
     ASSERT_TRUE(p.result.ok()) << p.result.message();
     ASSERT_EQ(p.lights.size(), 1u);
@@ -88,8 +90,8 @@ TEST(Lists, OneSpot) {
 
 TEST(Lists, OnlyDirectional) {
     std::vector<Light> lights(3, directional());
-    lights[1].firstShadowView = 5, lights[1].cascadeCount = 3, lights[1].sourceRadius = 0.5f;
-    lights[2].cascadeCount = 9;  // without a shadow view it says nothing
+    lights[0].casts = lights[2].casts = false;
+    lights[1].sourceRadius = 0.5f;
     const Prepared p = runLights(lights);
     ASSERT_TRUE(p.result.ok()) << p.result.message();
     EXPECT_EQ(hostIndices(p), (std::vector<std::uint32_t>{0, 1, 2}));
@@ -101,8 +103,10 @@ TEST(Lists, OnlyDirectional) {
     EXPECT_NEAR(p.lights[0].directionWs.y, -1, 1e-6);
     EXPECT_EQ(p.lights[0].shadowView, gpu::kNoShadowView);
     EXPECT_EQ(p.lights[0].typeAndFlags, gpu::kLightDirectional);
-    EXPECT_EQ(p.lights[1].shadowView, 5u);
-    EXPECT_EQ(p.lights[1].typeAndFlags, gpu::kLightDirectional | gpu::kLightCastsBit | 3u << gpu::kLightCascadesShift);
+    EXPECT_EQ(p.lights[1].shadowView, 0u);
+    EXPECT_EQ(p.lights[1].typeAndFlags, gpu::kLightDirectional | gpu::kLightCastsBit |
+                                            gpu::kFilterPcss << gpu::kLightFilterShift |
+                                            3u << gpu::kLightCascadesShift);
     EXPECT_NEAR(p.lights[1].sourceRadius, std::tan(0.5), 1e-6);
     EXPECT_TRUE(std::all_of(p.masks.begin(), p.masks.end(), [](std::uint32_t w) { return w == 0; }));
     EXPECT_TRUE(std::all_of(p.zBins.begin(), p.zBins.end(), [](std::uint32_t w) { return w == gpu::kZBinEmpty; }));
@@ -170,7 +174,6 @@ TEST(Lists, RangeFromIntensity) {
 
 TEST(Lists, Fades) {
     std::vector<Light> lights(4, pointAt(0, 0, -10, 3));
-    for (Light& light : lights) light.firstShadowView = 0;
     lights[0].fadeStartMetres = 8, lights[0].fadeEndMetres = 16;
     lights[1].shadowFadeStartMetres = 5, lights[1].shadowFadeEndMetres = 15;
     lights[2].shadowFadeStartMetres = 5, lights[2].shadowFadeEndMetres = 10;
@@ -271,7 +274,12 @@ TEST(Lists, RunsAreDeterministicAndWriteEveryWord) {
     std::vector<unsigned char> frame(sizes.frameConstants + 16, 0x11), gpuLights(sizes.lights + 16, 0x11),
         zBins(sizes.zBins + 16, 0x11), masks(sizes.tileLightMasks + 16, 0x11);
     PrepareReport report;
-    ASSERT_TRUE(other->run(input, {frame.data(), gpuLights.data(), zBins.data(), masks.data()}, report).ok());
+    PreparedLights answer;
+    ASSERT_TRUE(other->run(input, answer).ok());
+    ASSERT_TRUE(other
+                    ->write(planViews(answer.visible), kManyViews,
+                            {frame.data(), gpuLights.data(), zBins.data(), masks.data()}, &report)
+                    .ok());
     EXPECT_EQ(report.visible, a.report.visible);
     EXPECT_EQ(std::memcmp(frame.data(), &a.frame, sizes.frameConstants), 0);
     EXPECT_EQ(std::memcmp(gpuLights.data(), a.lights.data(), a.lights.size() * sizeof(gpu::GpuLight)), 0);
@@ -324,16 +332,135 @@ TEST(BadLight, EachHasItsSentence) {
     expectRefused(with(point, [&](Light& l) { l.fadeEndMetres = 3; }), " fadeEndMetres");
     expectRefused(with(point, [&](Light& l) { l.fadeStartMetres = nan; }), " fadeEndMetres");
     expectRefused(with(point, [&](Light& l) { l.shadowFadeEndMetres = 3; }), "shadowFadeEndMetres");
-    expectRefused(with(point, [&](Light& l) { l.firstShadowView = 995; }), "firstShadowView");
     Light sun = directional();
-    sun.firstShadowView = 996, sun.cascadeCount = 4, sun.sourceRadius = 0.5f;
-    expectRefused(with(sun, [&](Light& l) { l.cascadeCount = 0; }), "cascadeCount");
-    expectRefused(with(sun, [&](Light& l) { l.cascadeCount = 9; }), "cascadeCount");
-    expectRefused(with(sun, [&](Light& l) { l.cascadeCount = 5; }), "firstShadowView");
+    sun.sourceRadius = 0.5f;
     expectRefused(with(sun, [&](Light& l) { l.sourceRadius = 0.51f; }), "at most 0.5 radians");
     EXPECT_TRUE(runLights({sun}).result.ok());
-    expectRefused(with(spot, [&](Light& l) { l.firstShadowView = 1000; }), "firstShadowView");
+    sun.sourceRadius = 2, sun.casts = false;  // of a sun without a shadow nobody asks
+    EXPECT_TRUE(runLights({sun}).result.ok());
     expectRefused(with(point, [&](Light& l) { l.type = static_cast<LightType>(9); }), "LightType");
+    expectRefused(with(point, [&](Light& l) { l.filter = static_cast<Filter>(4); }), "Filter");
+    expectRefused(with(point, [&](Light& l) { l.pcssPreset = 4; }), "pcssPreset");
+}
+
+// Point, spot and sun in view, in the order of the answer; a light that does not cast, and one that has faded.
+struct Views : ::testing::Test {
+    std::unique_ptr<Prepare> prepare = makePrepare({});
+    std::vector<Light> lights = {pointAt(0, 0, -10, 3), pointAt(0, 0, -20, 3), directional(), pointAt(0, 0, -30, 3),
+                                 pointAt(0, 0, -40, 3)};
+    PreparedLights answer;
+    std::vector<LightShadowViews> views;
+    gpu::GpuFrame frame = {};
+    std::vector<gpu::GpuLight> gpuLights;
+    std::vector<std::uint32_t> zBins, masks;
+
+    Views() {
+        lights[1].type = LightType::Spot;
+        lights[3].casts = false;
+        lights[4].shadowFadeStartMetres = 10, lights[4].shadowFadeEndMetres = 20;
+        const PrepareSizes sizes = prepareSizes(640, 360);
+        gpuLights.resize(sizes.lights / sizeof(gpu::GpuLight));
+        zBins.resize(sizes.zBins / 4);
+        masks.resize(sizes.tileLightMasks / 4);
+        EXPECT_TRUE(run().ok());
+        views = planViews(answer.visible, 8);
+    }
+    Result run() {
+        ViewInput input;
+        input.camera = makeCamera({});
+        input.widthPx = 640, input.heightPx = 360;
+        input.lights = lights;
+        return prepare->run(input, answer);
+    }
+    Result write(std::uint32_t count = 15, PrepareReport* report = nullptr) {
+        return prepare->write(views, count, {&frame, gpuLights.data(), zBins.data(), masks.data()}, report);
+    }
+    void expectRefused(const std::string& words, std::uint32_t count = 15) {
+        const Result result = write(count);
+        EXPECT_EQ(result.status(), Status::BadArgument) << words;
+        EXPECT_NE(std::string(result.message()).find(words), std::string::npos) << result.message();
+    }
+};
+
+TEST_F(Views, AreGivenInTheOrderOfTheAnswer) {
+    ASSERT_EQ(answer.visible.size(), 5u);
+    const std::uint32_t order[] = {2, 0, 1, 3, 4};
+    const bool casts[] = {true, true, true, false, false};
+    for (std::size_t i = 0; i < 5; ++i) {
+        EXPECT_EQ(answer.visible[i].light, order[i]);
+        EXPECT_EQ(answer.visible[i].casts, casts[i]) << i;
+    }
+    EXPECT_EQ(answer.report.casting, 3u);
+    PrepareReport report;
+    ASSERT_TRUE(write(15, &report).ok());
+    EXPECT_EQ(report.casting, 3u);
+    EXPECT_EQ(gpuLights[0].shadowView, 0u);
+    EXPECT_EQ(gpuLights[1].shadowView, 8u);
+    EXPECT_EQ(gpuLights[2].shadowView, 14u);
+    EXPECT_EQ(gpuLights[0].typeAndFlags >> gpu::kLightCascadesShift & gpu::kLightCascadesMask, 8u);
+    // None for one of them, and views for those that do not cast, which are ignored however wrong they are.
+    views[1] = {};
+    views[3] = views[4] = {99, 17};
+    ASSERT_TRUE(write(15, &report).ok());
+    EXPECT_EQ(report.casting, 2u);
+    for (const std::size_t i : {1, 3, 4}) {
+        EXPECT_EQ(gpuLights[i].typeAndFlags & gpu::kLightCastsBit, 0u) << i;
+        EXPECT_EQ(gpuLights[i].shadowView, gpu::kNoShadowView) << i;
+    }
+    // No views at all: no light casts.
+    views.clear();
+    ASSERT_TRUE(write(0, &report).ok());
+    EXPECT_EQ(report.casting, 0u);
+    EXPECT_EQ(report.visible, 5u);
+}
+
+TEST_F(Views, WrongOnesHaveTheirSentences) {
+    const std::vector<LightShadowViews> good = views;
+    const auto refuse = [&](auto spoil, const std::string& words) {
+        views = good;
+        spoil(views);
+        expectRefused(words);
+    };
+    refuse([](auto& v) { v.pop_back(); }, "4 lights were given shadow views, but 5 are visible");
+    refuse([](auto& v) { v.emplace_back(); }, "6 lights");
+    refuse([](auto& v) { v[0].count = 0; }, "Light 2: a directional light has 1 to 8 shadow views");
+    refuse([](auto& v) { v[0].count = 9; }, "Light 2: a directional light has 1 to 8 shadow views");
+    refuse([](auto& v) { v[1].count = 5; }, "Light 0: a point light has six shadow views");
+    refuse([](auto& v) { v[2].count = 0; }, "Light 1: a spot has one shadow view");
+    refuse([](auto& v) { v[2].count = 2; }, "Light 1: a spot has one shadow view");
+    refuse([](auto& v) { v[0].first = 8; }, "Light 2: its shadow views are out of bounds");
+    refuse([](auto& v) { v[1].first = 10; }, "Light 0: its shadow views are out of bounds");
+    refuse([](auto& v) { v[2].first = 15; }, "Light 1: its shadow views are out of bounds");
+    refuse([](auto& v) { v[2].first = 0xFFFFFFFEu; }, "Light 1: its shadow views are out of bounds");
+    views = good;
+    expectRefused("Light 1: its shadow views are out of bounds", 14);
+    EXPECT_EQ(prepare->write(views, 15, {nullptr, gpuLights.data(), zBins.data(), masks.data()}).status(),
+              Status::BadArgument);
+    EXPECT_TRUE(write().ok());
+    EXPECT_TRUE(write().ok());  // one answer may be written more than once
+}
+
+TEST_F(Views, NeedASuccessfulRun) {
+    const Light good = lights[0];
+    lights[0].intensity = -1;
+    EXPECT_FALSE(run().ok());
+    expectRefused("needs a successful run()");
+    lights[0] = good;
+    EXPECT_TRUE(run().ok());
+    EXPECT_TRUE(write().ok());
+    PrepareDesc smaller;
+    smaller.maxWidthPx = 639;
+    ASSERT_TRUE(prepare->resize(smaller).ok());
+    expectRefused("needs a successful run()");
+    EXPECT_FALSE(run().ok());  // above the new maximum
+    smaller.maxWidthPx = 0;
+    EXPECT_EQ(prepare->resize(smaller).status(), Status::BadArgument);
+    ASSERT_TRUE(prepare->resize({}).ok());
+    EXPECT_TRUE(run().ok());
+    EXPECT_TRUE(write().ok());
+    std::unique_ptr<Prepare> fresh = makePrepare({});
+    EXPECT_EQ(fresh->write({}, 0, {&frame, gpuLights.data(), zBins.data(), masks.data()}).status(),
+              Status::BadArgument);
 }
 
 }  // namespace

@@ -201,9 +201,10 @@ inline bool contains(const Light& light, Point p) {
     return light.type != LightType::Spot || dot(d, directionOf(light)) >= std::cos(light.outerConeAngle) * distance;
 }
 
-// What phase 1 wrote.
+// What phase 1 answered and wrote.
 struct Prepared {
     Result result;
+    std::vector<LightOnScreen> answer;
     PrepareReport report;
     gpu::GpuFrame frame = {};
     std::vector<gpu::GpuLight> lights;
@@ -231,6 +232,23 @@ inline std::unique_ptr<Prepare> makePrepare(const PrepareDesc& desc) {
     return prepare;
 }
 
+// A host's plan: views for every light that wants them, one light's after the other's.
+inline std::vector<LightShadowViews> planViews(std::span<const LightOnScreen> lights, std::uint32_t cascades = 3) {
+    std::vector<LightShadowViews> views(lights.size());
+    std::uint32_t next = 0;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        if (!lights[i].casts) continue;
+        const std::uint32_t count = lights[i].type == LightType::Point  ? 6
+                                    : lights[i].type == LightType::Spot ? 1
+                                                                        : cascades;
+        views[i] = {next, count};
+        next += count;
+    }
+    return views;
+}
+
+constexpr std::uint32_t kManyViews = 1u << 20;
+
 inline Prepared runPrepare(Prepare& prepare, const ViewInput& input) {
     Prepared out;
     const PrepareSizes sizes = prepareSizes(input.widthPx, input.heightPx);
@@ -239,7 +257,12 @@ inline Prepared runPrepare(Prepare& prepare, const ViewInput& input) {
     out.zBins.resize(sizes.zBins / 4);
     // Garbage first: everything that may be read must have been written.
     out.masks.assign(sizes.tileLightMasks / 4, 0xCDCDCDCDu);
-    out.result = prepare.run(input, {&out.frame, out.lights.data(), out.zBins.data(), out.masks.data()}, out.report);
+    PreparedLights answer;
+    out.result = prepare.run(input, answer);
+    if (!out.result.ok()) return out;
+    out.answer.assign(answer.visible.begin(), answer.visible.end());
+    out.result = prepare.write(planViews(answer.visible), kManyViews,
+                               {&out.frame, out.lights.data(), out.zBins.data(), out.masks.data()}, &out.report);
     if (out.result.ok()) out.lights.resize(out.report.visible);
     return out;
 }
@@ -252,7 +275,6 @@ inline Prepared runOnce(const Camera& camera, std::uint32_t widthPx, std::uint32
     input.camera = camera;
     input.widthPx = widthPx, input.heightPx = heightPx;
     input.lights = lights;
-    input.shadowViewCount = 1000;
     return runPrepare(*prepare, input);
 }
 

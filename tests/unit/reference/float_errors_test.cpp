@@ -79,8 +79,21 @@ void compareFrame(TestFrame& frame, Totals& totals) {
     }
 }
 
+constexpr PcssTapCounts kOtherTaps = {5, 7};
+
+/// Each light another of the filters, and soft ones one of two presets where there are several filters.
+void takeTurns(std::vector<LightModel>& lights, FilterSet set) {
+    std::vector<Filter> filters;
+    for (const Filter filter : {Filter::Hard, Filter::Pcf, Filter::Pcss})
+        if ((set & only(filter)) != 0) filters.push_back(filter);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        lights[i].filter = filters[i % filters.size()];
+        lights[i].pcssPreset = filters.size() > 1 ? i / filters.size() % 2 : 0;
+    }
+}
+
 struct FilterCase {
-    ShadowFilter filter;
+    FilterSet filters;  // the lights take turns
     int pcfRadius;
     PcssTapCounts taps;
     std::uint32_t visibilityBits;
@@ -91,24 +104,26 @@ struct FilterCase {
 
 TEST(FloatErrors, PlainFloatsStayWithinTheMargins) {
     // Most of what is left are cameras with standard Z, whose far pixels are known to no better than the bias.
-    const FilterCase cases[] = {{ShadowFilter::Hard, 1, {}, 8, 0.03, 0.03},
-                                {ShadowFilter::Pcf, 1, {}, 8, 0.04, 0.03},
-                                {ShadowFilter::Pcf, 2, {}, 8, 0.04, 0.03},
-                                {ShadowFilter::Pcf, 3, {}, 8, 0.04, 0.03},
-                                {ShadowFilter::Pcss, 1, {16, 24}, 8, 0.04, 0.03},
-                                {ShadowFilter::Pcss, 1, {8, 12}, 8, 0.04, 0.03},
-                                {ShadowFilter::Pcss, 1, {1, 1}, 4, 0.03, 0.03},
-                                {ShadowFilter::Pcss, 1, {32, 64}, 4, 0.03, 0.03},
-                                {ShadowFilter::Hard, 1, {}, 8, 0.03, 0.03, BiasMode::Oriented, false},
-                                {ShadowFilter::Pcf, 1, {}, 8, 0.1, 0.1, BiasMode::OrientedConstant, false},
-                                {ShadowFilter::Hard, 1, {}, 8, 0.5, 0.5, BiasMode::Unbiased, true}};
+    const FilterCase cases[] = {{only(Filter::Hard), 1, {}, 8, 0.03, 0.03},
+                                {only(Filter::Pcf), 1, {}, 8, 0.04, 0.03},
+                                {only(Filter::Pcf), 2, {}, 8, 0.04, 0.03},
+                                {only(Filter::Pcf), 3, {}, 8, 0.04, 0.03},
+                                {only(Filter::Pcss), 1, {16, 24}, 8, 0.04, 0.03},
+                                {only(Filter::Pcss), 1, {8, 12}, 8, 0.04, 0.03},
+                                {only(Filter::Pcss), 1, {1, 1}, 4, 0.03, 0.03},
+                                {only(Filter::Pcss), 1, {32, 64}, 4, 0.03, 0.03},
+                                {only(Filter::Hard), 1, {}, 8, 0.03, 0.03, BiasMode::Oriented, false},
+                                {only(Filter::Pcf), 1, {}, 8, 0.1, 0.1, BiasMode::OrientedConstant, false},
+                                {only(Filter::Hard), 1, {}, 8, 0.5, 0.5, BiasMode::Unbiased, true},
+                                {kAllBuiltInFilters, 2, {16, 24}, 8, 0.04, 0.03},
+                                {kAllBuiltInFilters, 1, {32, 64}, 4, 0.04, 0.03}};
     for (const FilterCase& filter : cases) {
         Totals totals;
         for (std::uint64_t seed = 200; seed < 220; ++seed) {
             TestFrame frame = makeTestFrame(seed, 40, 32, 25, nullptr, seed % 4);
-            frame.shadows.filter = filter.filter;
+            takeTurns(frame.lights, filter.filters);
             frame.shadows.pcfRadius = filter.pcfRadius;
-            frame.shadows.pcssTaps = filter.taps;
+            frame.shadows.pcssPresets = {filter.taps, kOtherTaps, filter.taps, kOtherTaps};
             frame.shadows.visibilityBits = filter.visibilityBits;
             frame.shadows.bias = filter.bias;
             frame.shadows.facedAwayIsDark = filter.facedAwayIsDark;

@@ -53,39 +53,39 @@ struct HandMade {
         for (std::uint32_t y = 1; y < 9; ++y)
             for (std::uint32_t x = 2; x < 10; ++x) atlas.at(0, x, y) = x < 6 ? 0.5f : 0.0f;
     }
-    Visibility at(ShadowFilter filter, int radius, double x, double y, double errorPx = 0) const {
+    Visibility at(Filter filter, int radius, double x, double y, double errorPx = 0) const {
         return against(filter, radius, x, y, errorPx, 0.25);
     }
     /// A receiver that faces the view, at this device depth.
-    Visibility against(ShadowFilter filter, int radius, double x, double y, double errorPx, double depth) const {
+    Visibility against(Filter filter, int radius, double x, double y, double errorPx, double depth) const {
         ReceiverPlane plane;
         plane.depth = within(depth, 1e-6);
         const Comparison comparison = {view, atlas, plane};
-        if (filter == ShadowFilter::Hard) return hardAt(comparison, within(x, errorPx), within(y, errorPx));
+        if (filter == Filter::Hard) return hardAt(comparison, within(x, errorPx), within(y, errorPx));
         return pcfAt(comparison, radius, within(x, errorPx), within(y, errorPx));
     }
 };
 
 TEST(Filter, HardTakesTheTexel) {
     const HandMade m;
-    EXPECT_EQ(m.at(ShadowFilter::Hard, 0, 5.99, 4).max, 0);
-    EXPECT_EQ(m.at(ShadowFilter::Hard, 0, 6.01, 4).min, 1);
-    const Visibility either = m.at(ShadowFilter::Hard, 0, 6.01, 4, 0.02);
+    EXPECT_EQ(m.at(Filter::Hard, 0, 5.99, 4).max, 0);
+    EXPECT_EQ(m.at(Filter::Hard, 0, 6.01, 4).min, 1);
+    const Visibility either = m.at(Filter::Hard, 0, 6.01, 4, 0.02);
     EXPECT_EQ(either.min, 0);
     EXPECT_EQ(either.max, 1);
-    EXPECT_EQ(m.at(ShadowFilter::Hard, 0, 50, 4).min, 1);  // clamped to the rectangle's last texel
-    EXPECT_EQ(m.at(ShadowFilter::Hard, 0, -50, -50).max, 0);
+    EXPECT_EQ(m.at(Filter::Hard, 0, 50, 4).min, 1);  // clamped to the rectangle's last texel
+    EXPECT_EQ(m.at(Filter::Hard, 0, -50, -50).max, 0);
     // Equal within the error: ambiguous.
-    EXPECT_EQ(m.against(ShadowFilter::Hard, 0, 3, 3, 0, 0.5).max, 1);
-    EXPECT_EQ(m.against(ShadowFilter::Hard, 0, 3, 3, 0, 0.5).min, 0);
-    EXPECT_EQ(m.against(ShadowFilter::Hard, 0, 3, 3, 0, 0.501).min, 1);
+    EXPECT_EQ(m.against(Filter::Hard, 0, 3, 3, 0, 0.5).max, 1);
+    EXPECT_EQ(m.against(Filter::Hard, 0, 3, 3, 0, 0.5).min, 0);
+    EXPECT_EQ(m.against(Filter::Hard, 0, 3, 3, 0, 0.501).min, 1);
 }
 
 TEST(Filter, StandardDepthComparesTheOtherWay) {
     HandMade m;
     m.view.reversed = false;
-    EXPECT_EQ(m.against(ShadowFilter::Hard, 0, 3, 3, 0, 0.25).min, 1);  // 0.5 is farther
-    EXPECT_EQ(m.against(ShadowFilter::Hard, 0, 8, 3, 0, 0.25).max, 0);  // 0.0 is nearer
+    EXPECT_EQ(m.against(Filter::Hard, 0, 3, 3, 0, 0.25).min, 1);  // 0.5 is farther
+    EXPECT_EQ(m.against(Filter::Hard, 0, 8, 3, 0, 0.25).max, 0);  // 0.0 is nearer
 }
 
 TEST(Filter, PcfIsAMeanOfBilinearComparisons) {
@@ -95,7 +95,7 @@ TEST(Filter, PcfIsAMeanOfBilinearComparisons) {
             // One axis decides: each of the 2r + 1 comparisons is lit by the share of it beyond x = 6.
             double sum = 0;
             for (int i = -radius; i <= radius; ++i) sum += std::clamp(x + i - 5.5, 0.0, 1.0);
-            const Visibility v = m.at(ShadowFilter::Pcf, radius, x, 5);
+            const Visibility v = m.at(Filter::Pcf, radius, x, 5);
             EXPECT_NEAR(v.min, sum / (2 * radius + 1), 1e-12);
             EXPECT_NEAR(v.max, sum / (2 * radius + 1), 1e-12);
         }
@@ -107,17 +107,17 @@ TEST(Filter, PcfStaysInTheRectangle) {
     for (const double y : {-5.0, 1.0, 2.0, 9.0, 30.0}) {
         // Radius 2 goes no farther right than x = 7: half a dark texel of five. Radius 3 just fits 8 texels, in the
         // middle.
-        EXPECT_NEAR(m.at(ShadowFilter::Pcf, 2, 100, y).min, 3.5 / 5.0, 1e-12);
-        EXPECT_NEAR(m.at(ShadowFilter::Pcf, 3, 100, y).min, 0.5, 1e-12);
-        EXPECT_NEAR(m.at(ShadowFilter::Pcf, 3, -100, y).max, 0.5, 1e-12);
+        EXPECT_NEAR(m.at(Filter::Pcf, 2, 100, y).min, 3.5 / 5.0, 1e-12);
+        EXPECT_NEAR(m.at(Filter::Pcf, 3, 100, y).min, 0.5, 1e-12);
+        EXPECT_NEAR(m.at(Filter::Pcf, 3, -100, y).max, 0.5, 1e-12);
     }
 }
 
 TEST(Filter, PcfIntervalHoldsAllPositionsWithinTheError) {
     const HandMade m;
-    const Visibility range = m.at(ShadowFilter::Pcf, 1, 6.45, 5, 0.2);
+    const Visibility range = m.at(Filter::Pcf, 1, 6.45, 5, 0.2);
     for (double x = 6.25; x <= 6.65; x += 0.01) {
-        const Visibility v = m.at(ShadowFilter::Pcf, 1, x, 5);
+        const Visibility v = m.at(Filter::Pcf, 1, x, 5);
         EXPECT_LE(range.min, v.min + 1e-12);
         EXPECT_GE(range.max, v.max - 1e-12);
     }
@@ -144,12 +144,12 @@ TEST(Quantised, SquareRootAndFade) {
 TEST(Quantised, FadeByPixel) {
     Light sun;
     sun.type = LightType::Directional;
-    sun.firstShadowView = 0;
-    sun.cascadeCount = 1;
     sun.shadowFadeStartMetres = 10;
     sun.shadowFadeEndMetres = 20;
     const CameraSetup setup;
-    const LightModel model = makeLightModels(std::span(&sun, 1), makeCameraModel(makeCamera(setup, 64, 64), 64, 64))[0];
+    const LightShadowViews views = {0, 1};
+    const LightModel model = makeLightModels(std::span(&sun, 1), std::span(&views, 1),
+                                             makeCameraModel(makeCamera(setup, 64, 64), 64, 64))[0];
     EXPECT_TRUE(model.casts);
     EXPECT_TRUE(model.shadowFades);
     const auto at = [&](double distance) {
@@ -175,7 +175,6 @@ struct BallOverFloor {
         light.direction[1] = -1;
         light.direction[2] = 0;
         light.rangeMetres = 20;
-        light.firstShadowView = 0;
         TestShadows shadows = buildShadows(shapes, std::span(&light, 1), setup);
         input.views = makeShadowViewModels(shadows.views);
         input.atlases = std::move(shadows.atlases);
@@ -183,6 +182,7 @@ struct BallOverFloor {
         model.position = {0, 4, 0};
         model.direction = {0, -1, 0};
         model.casts = true;
+        model.filter = Filter::Pcf;
         model.firstShadowView = 0;
         model.rangeMetres = 20;
         model.biasMetres = 0.002;
@@ -208,8 +208,8 @@ TEST(GenerateShadows, ShadowOfABallIsADisk) {
             setup.reversed = reversed;
             setup.infiniteFar = reversed;
             BallOverFloor scene(type, setup);
-            for (const ShadowFilter filter : {ShadowFilter::Hard, ShadowFilter::Pcf}) {
-                scene.input.filter = filter;
+            for (const Filter filter : {Filter::Hard, Filter::Pcf}) {
+                scene.model.filter = filter;
                 Random random(9);
                 for (int i = 0; i < 1000; ++i) {
                     const double x = random.uniform(-2.5, 2.5), z = random.uniform(-2.5, 2.5);
@@ -231,7 +231,6 @@ TEST(GenerateShadows, BoxAroundAPointLightIsLit) {
     setup.viewSizePx = 128;
     Light light;
     light.rangeMetres = 20;
-    light.firstShadowView = 0;
     const Shapes shapes = {box({-2, -2, -2}, {2, 2, 2})};
     TestShadows shadows = buildShadows(shapes, std::span(&light, 1), setup);
     ShadowInput input;
@@ -239,6 +238,7 @@ TEST(GenerateShadows, BoxAroundAPointLightIsLit) {
     input.atlases = std::move(shadows.atlases);
     LightModel model;
     model.casts = true;
+    model.filter = Filter::Pcf;
     model.firstShadowView = 0;
     model.biasMetres = 0.002;
     model.rangeMetres = 20;
@@ -274,7 +274,7 @@ TEST(GenerateShadows, WhatNeedsNoSampling) {
     EXPECT_EQ(scene.onFloor(0, 0).min, 1);
     scene.model.casts = true;
     EXPECT_EQ(scene.onFloor(0, 0).max, 0);
-    scene.input.filter = ShadowFilter::Off;
+    scene.input.shadowsOff = true;
     EXPECT_EQ(scene.onFloor(0, 0).min, 1);
 }
 
@@ -344,8 +344,8 @@ TEST_F(FinalLists, PlantedErrorsAreFound) {
 }
 
 TEST_F(FinalLists, SlotsOfFourBits) {
-    for (const ShadowFilter filter : {ShadowFilter::Pcf, ShadowFilter::Pcss}) {
-        frame.shadows.filter = filter;
+    for (const Filter filter : {Filter::Pcf, Filter::Pcss}) {
+        useFilter(frame.lights, filter);
         frame.shadows.visibilityBits = 4;
         HonestBuffers half = makeHonestBuffers(frame, expected);
         EXPECT_EQ(half.visibility.size(), std::size_t(half.slots) * 8);

@@ -25,6 +25,10 @@ struct TestFrame {
     ShadowInput shadows;
 };
 
+inline void useFilter(std::vector<LightModel>& lights, Filter filter) {
+    for (LightModel& light : lights) light.filter = filter;
+}
+
 inline TestFrame makeTestFrame(std::uint64_t seed, std::uint32_t widthPx, std::uint32_t heightPx,
                                std::uint32_t lightCount, const CameraSetup* setup = nullptr, std::uint32_t suns = 0) {
     TestFrame frame;
@@ -44,7 +48,7 @@ inline TestFrame makeTestFrame(std::uint64_t seed, std::uint32_t widthPx, std::u
     TestShadows shadows = buildShadows(frame.shapes, frame.hostLights, shadowSetup);
     frame.shadows.views = makeShadowViewModels(shadows.views);
     frame.shadows.atlases = std::move(shadows.atlases);
-    frame.lights = makeLightModels(frame.hostLights, frame.model);
+    frame.lights = makeLightModels(frame.hostLights, shadows.lightViews, frame.model);
     frame.receivers = renderReceivers(frame.shapes, frame.camera, widthPx, heightPx);
     frame.grid = makePixelGrid(frame.model, frame.receivers);
     return frame;

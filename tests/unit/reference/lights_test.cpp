@@ -4,6 +4,7 @@
 #include "gpu_interface/numbers.h"
 #include "reference/lights.h"
 #include "reference/test_scene.h"
+#include "reference/test_shadows.h"
 
 namespace gnomon::reference {
 namespace {
@@ -20,11 +21,16 @@ TEST(Lights, RangeAndFades) {
     light.fadeEndMetres = 8;
     light.shadowFadeStartMetres = 1;
     light.shadowFadeEndMetres = 5;
-    const LightModel model = makeLightModels(std::span(&light, 1), camera)[0];
+    const LightModel model = makeLightModels(std::span(&light, 1), {}, camera)[0];
     EXPECT_NEAR(model.rangeMetres, 10, 1e-5);  // 2 cd / 100 m^2 = 0.02 lux
     EXPECT_NEAR(model.lightFade, 0.75, 1e-9);
     EXPECT_EQ(model.shadowFade, 0);
-    EXPECT_FALSE(model.casts);
+    EXPECT_TRUE(model.wantsShadow);
+    EXPECT_FALSE(model.casts);  // without views
+    const LightShadowViews views = {6, 6};
+    EXPECT_TRUE(makeLightModels(std::span(&light, 1), std::span(&views, 1), camera)[0].casts);
+    light.casts = false;
+    EXPECT_FALSE(makeLightModels(std::span(&light, 1), std::span(&views, 1), camera)[0].casts);
 }
 
 gpu::GpuLight toGpu(const LightModel& light, const CameraModel& camera) {
@@ -37,9 +43,10 @@ gpu::GpuLight toGpu(const LightModel& light, const CameraModel& camera) {
     out.sinOuter = light.type == LightType::Spot ? float(std::sin(light.outerAngle)) : 0.0f;
     out.positionVs.z = float(viewDepth(camera, light.position));
     out.sourceRadius = float(light.sourceRadius);
-    out.typeAndFlags = std::uint32_t(light.type) | (light.casts ? gpu::kLightCastsBit : 0u) |
-                       (light.shadowFades ? gpu::kLightShadowFadesBit : 0u) |
-                       light.cascadeCount << gpu::kLightCascadesShift;
+    out.typeAndFlags =
+        std::uint32_t(light.type) | (light.casts ? gpu::kLightCastsBit : 0u) |
+        (light.shadowFades ? gpu::kLightShadowFadesBit : 0u) | light.cascadeCount << gpu::kLightCascadesShift |
+        std::uint32_t(light.filter) << gpu::kLightFilterShift | light.pcssPreset << gpu::kLightPcssPresetShift;
     out.lightMask = light.mask;
     out.shadowView = light.firstShadowView;
     out.hostIndex = light.hostIndex;
@@ -58,10 +65,10 @@ TEST(Lights, GpuLightsAreCompared) {
     Random random(5);
     const CameraSetup setup = randomCamera(random);
     const CameraModel camera = makeCameraModel(makeCamera(setup, 64, 64), 64, 64);
-    std::vector<Light> host = makeLights(random, setup, {.suns = 3});
+    std::vector<Light> host = makeLights(random, setup, {.suns = 3, .filters = kAllBuiltInFilters, .pcssPresets = 4});
     host.back().shadowFadeStartMetres = 10;
     host.back().shadowFadeEndMetres = 15;
-    const std::vector<LightModel> all = makeLightModels(host, camera);
+    const std::vector<LightModel> all = makeLightModels(host, numberViews(host), camera);
     std::vector<gpu::GpuLight> gpuLights;
     for (std::size_t i = all.size(); i-- > 0;) gpuLights.push_back(toGpu(all[i], camera));
     EXPECT_TRUE(checkGpuLights(all, camera, gpuLights).ok()) << checkGpuLights(all, camera, gpuLights).text();
@@ -89,6 +96,9 @@ TEST(Lights, GpuLightsAreCompared) {
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.hostIndex = 5000; }), 1u);
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.sourceRadius += 0.001f; }), 1u);
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.typeAndFlags ^= gpu::kLightShadowFadesBit; }), 1u);
+    EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.typeAndFlags ^= 1u << gpu::kLightFilterShift; }), 1u);
+    EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.typeAndFlags ^= 2u << gpu::kLightPcssPresetShift; }), 1u);
+    EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { ++l.shadowView; }), 1u);
     constexpr std::uint32_t kSun = gpu::kLightDirectional;
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.sourceRadius *= 1.001f; }, kSun), 1u);  // the angle, not its tangent
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.typeAndFlags ^= 7u << gpu::kLightCascadesShift; }, kSun), 1u);

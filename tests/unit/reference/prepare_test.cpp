@@ -45,7 +45,7 @@ TEST(Convex, MeetsAgreesWithSampling) {
         lightSetup.count = 30;
         lightSetup.directionalShare = 0;
         const std::vector<Light> host = makeLights(random, setup, lightSetup);
-        for (const LightModel& light : makeLightModels(host, camera)) {
+        for (const LightModel& light : makeLightModels(host, {}, camera)) {
             const Polyhedron piece = viewPiece(camera, 32, 32, 64, 64, camera.nearMetres + 1, camera.nearMetres + 6);
             const Verdict verdict = meets(light, piece, 1e-6);
             bool found = false;

@@ -5,7 +5,7 @@
 #include "reference/shadow_views.h"
 #include "reference/test_scene.h"
 #include "reference/test_shadows.h"
-#include "shadow_views.h"
+#include "visibility/shadow_views.h"
 
 namespace gnomon::reference {
 namespace {

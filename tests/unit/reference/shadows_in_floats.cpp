@@ -121,8 +121,8 @@ struct Sampler {
     [[nodiscard]] float pcf() const;
     [[nodiscard]] float pcss(const Pixel& pixel) const;
     [[nodiscard]] float filter(const Pixel& pixel) const {
-        if (input.filter == ShadowFilter::Hard) return texel(plane.px.x, plane.px.y).lit ? 1.0f : 0.0f;
-        return input.filter == ShadowFilter::Pcf ? pcf() : pcss(pixel);
+        if (light.filter == Filter::Hard) return texel(plane.px.x, plane.px.y).lit ? 1.0f : 0.0f;
+        return light.filter == Filter::Pcf ? pcf() : pcss(pixel);
     }
 };
 
@@ -160,6 +160,7 @@ float Sampler::pcf() const {
 
 float Sampler::pcss(const Pixel& pixel) const {
     const float radius = float(light.sourceRadius), z = plane.z;
+    const PcssTapCounts taps = input.pcssPresets[light.pcssPreset];
     const float p = std::max(v.perMetre.x, v.perMetre.y);
     const bool parallel = v.model.orthographic;
     const float g1 = parallel ? -radius / v.b : radius / v.b;
@@ -184,8 +185,8 @@ float Sampler::pcss(const Pixel& pixel) const {
     int occluding = 0, blockers = 0;
     float sum = 0;
     F2 e = start;
-    for (int i = 0; i < input.pcssTaps.search; ++i, e = turned(e)) {
-        const float share = (float(i) + 0.5f) / float(input.pcssTaps.search), aside = share * share * search;
+    for (int i = 0; i < taps.search; ++i, e = turned(e)) {
+        const float share = (float(i) + 0.5f) / float(taps.search), aside = share * share * search;
         const F2 q = position(e, aside), corner = clamped(q, 1);
         for (int j = 0; j < 4; ++j) {
             const Tap tap =
@@ -197,16 +198,16 @@ float Sampler::pcss(const Pixel& pixel) const {
             sum += tap.stored;
         }
     }
-    if (occluding == 4 * input.pcssTaps.search) return 0;
+    if (occluding == 4 * taps.search) return 0;
     if (blockers == 0) return 1;
     const float reach = std::clamp(g0 + g1 * (sum / float(blockers)), 1 / p, std::max(most, 1 / p));
     float total = 0;
     e = start;
-    for (int i = 0; i < input.pcssTaps.filter; ++i, e = turned(e)) {
-        const F2 q = position(e, std::sqrt((float(i) + 0.5f) / float(input.pcssTaps.filter)) * reach);
+    for (int i = 0; i < taps.filter; ++i, e = turned(e)) {
+        const F2 q = position(e, std::sqrt((float(i) + 0.5f) / float(taps.filter)) * reach);
         total += leaves(q) ? (elsewhere(q).lit ? 1.0f : 0.0f) : bilinear(clamped(q, 1));
     }
-    return total / float(input.pcssTaps.filter);
+    return total / float(taps.filter);
 }
 
 bool faces(const LightModel& light, const Pixel& pixel, F3 p) {
@@ -223,7 +224,7 @@ float sample(const LightModel& light, std::uint32_t index, const Pixel& pixel, F
     if (input.bias == BiasMode::Unbiased) bias = 0;
     const float offPlane = input.bias == BiasMode::Oriented ? float(pixel.offPlaneMetres) : -1.0f;
     const Plane plane = planeIn(v, p, f3(pixel.faceNormal), bias, toward, offPlane);
-    return Sampler{input, light, index, v, plane, input.filter == ShadowFilter::Pcss}.filter(pixel);
+    return Sampler{input, light, index, v, plane, light.filter == Filter::Pcss}.filter(pixel);
 }
 
 struct Fit {

@@ -19,14 +19,13 @@ struct Stage {
 
     Stage(const Shapes& shapes, const Light& given, const ShadowSetup& setup) : light(given) {
         light.rangeMetres = 50;
-        light.firstShadowView = 0;
         TestShadows shadows = buildShadows(shapes, std::span(&light, 1), setup);
-        input.filter = ShadowFilter::Pcss;
-        input.pcssTaps = {32, 64};
+        input.pcssPresets[0] = {32, 64};
         input.views = makeShadowViewModels(shadows.views);
         input.atlases = std::move(shadows.atlases);
         CameraSetup camera;
-        model = makeLightModels(std::span(&light, 1), makeCameraModel(makeCamera(camera, 64, 64), 64, 64))[0];
+        model = makeLightModels(std::span(&light, 1), shadows.lightViews,
+                                makeCameraModel(makeCamera(camera, 64, 64), 64, 64))[0];
     }
     [[nodiscard]] Visibility at(Vec3 position, Vec3 normal, std::uint32_t pattern = 0) const {
         Pixel pixel;
@@ -109,7 +108,7 @@ TEST(SoftShadows, PenumbraOfAnEdgeUnderTheSun) {
             setup.cascadeCentre = {0, 0, 0};
             setup.cascadeHalfExtentMetres = 2;
             Light sun = lamp(LightType::Directional, {}, {0, -1, 0}, 0.1);
-            sun.cascadeCount = 1;
+            setup.cascades = 1;
             expectPenumbra(Stage(boardOverFloor(height), sun, setup), std::tan(0.1) * height);
         }
     }
@@ -186,7 +185,7 @@ Stage sunOverFloor(const Shapes& shapes, double angle, std::uint32_t cascades, b
     setup.cascadeCentre = {0.3, 0, 0.2};
     setup.cascadeHalfExtentMetres = 2;
     Light sun = lamp(LightType::Directional, {}, normalize(Vec3{0.5, -1, 0.3}), angle);
-    sun.cascadeCount = cascades;
+    setup.cascades = cascades;
     return Stage(shapes, sun, setup);
 }
 
@@ -195,10 +194,10 @@ TEST(Cascades, FloorIsLit) {
     for (const bool reversed : {true, false}) {
         Stage stage = sunOverFloor({plane({0, 0, 0}, {0, 1, 0})}, 0.02, 3, reversed);
         Random random(4);
-        for (const ShadowFilter filter : {ShadowFilter::Hard, ShadowFilter::Pcf, ShadowFilter::Pcss}) {
-            stage.input.filter = filter;
+        for (const Filter filter : {Filter::Hard, Filter::Pcf, Filter::Pcss}) {
+            stage.model.filter = filter;
             stage.input.pcfRadius = 3;
-            stage.input.pcssTaps = {8, 12};
+            stage.input.pcssPresets[0] = {8, 12};
             for (std::uint32_t i = 0; i < 400; ++i) {
                 const Visibility v = stage.onFloor(random.uniform(-25, 25), random.uniform(-25, 25), i);
                 EXPECT_NEAR(v.min, 1, 1e-12);

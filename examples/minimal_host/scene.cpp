@@ -112,7 +112,7 @@ std::vector<gnomon::Light> sceneLights(std::uint64_t frameNumber) {
     // A point light that moves, so that its six views are drawn anew in every frame while all others are kept.
     gnomon::Light lantern;
     lantern.type = Point;
-    lantern.position[0] = -0.35f + 0.05f * static_cast<float>(frameNumber);
+    lantern.position[0] = -0.45f + 0.05f * static_cast<float>(frameNumber);
     lantern.position[1] = 1.8f, lantern.position[2] = -1.8f;
     lantern.rangeMetres = 7;
     lantern.filter = gnomon::Filter::Pcf;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
+#include <type_traits>
 
 #include "app/progress.h"
 #include "gpu_interface/numbers.h"
@@ -271,7 +273,16 @@ std::string rangeOf(const Setting& setting) {
 }
 
 nlohmann::ordered_json valueOf(const Setting& setting, const Settings& settings) {
-    return std::visit([&](auto member) { return nlohmann::ordered_json(settings.*member); }, setting.member);
+    return std::visit(
+        [&](auto member) {
+            const auto& value = settings.*member;
+            // A float's own shortest digits: 0.002, where the nearest double says 0.0020000000949949026.
+            if constexpr (std::is_same_v<decltype(member), float Settings::*>)
+                return nlohmann::ordered_json(std::strtod(fmt::format("{}", value).c_str(), nullptr));
+            else
+                return nlohmann::ordered_json(value);
+        },
+        setting.member);
 }
 
 nlohmann::ordered_json valuesOf(const Settings& settings) {

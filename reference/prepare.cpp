@@ -11,6 +11,12 @@ double marginOf(const LightModel& light, const CameraModel& camera) {
     return 1e-5 * (1.0 + light.rangeMetres + length(light.position - camera.eye) + sumOfMagnitudes(camera.eye));
 }
 
+/// Room for the cosine of a cone in floats, which cannot tell angles nearer than this apart: metres of depth.
+double coneMarginOf(const LightModel& light) {
+    if (light.type != LightType::Spot) return 0.0;
+    return light.rangeMetres * (1e-5 + 1e-6 / std::max(std::sin(light.outerAngle), 1e-3));
+}
+
 /// Smallest view depth in the light's volume; of the ball alone, or cut with the cone of a spot.
 double nearestViewDepth(const LightModel& light, const CameraModel& camera, bool exact) {
     const double centre = viewDepth(camera, light.position);
@@ -34,7 +40,8 @@ std::size_t outOfOrder(const std::vector<LightModel>& lights, const CameraModel&
             before = std::max(before, camera.nearMetres);
             after = std::max(after, camera.nearMetres);
         }
-        const double tolerance = marginOf(lights[i - 1], camera) + marginOf(lights[i], camera);
+        const double tolerance = marginOf(lights[i - 1], camera) + marginOf(lights[i], camera) +
+                                 coneMarginOf(lights[i - 1]) + coneMarginOf(lights[i]);
         if (before > after + tolerance) ++errors;
         if (before == after && lights[i - 1].hostIndex > lights[i].hostIndex) ++errors;
     }

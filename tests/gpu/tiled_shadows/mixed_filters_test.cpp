@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <set>
 #include <tuple>
 
 #include "checks.h"
@@ -15,14 +14,53 @@ namespace {
 class MixedFiltersTest : public GpuTest {};
 GNOMON_ON_EVERY_DEVICE(MixedFiltersTest);
 
+struct Made {
+    Filter filter;
+    std::uint8_t preset;
+};
+constexpr Made kMade[] = {{Filter::Hard, 0}, {Filter::Pcf, 0}, {Filter::Pcss, 0}, {Filter::Pcss, 1}};
+
+void put(const reference::Vec3& v, float out[3]) {
+    out[0] = static_cast<float>(v.x);
+    out[1] = static_cast<float>(v.y);
+    out[2] = static_cast<float>(v.z);
+}
+
+/// Of every filter and preset three points, three spots that look down at the room, and a sun.
+std::vector<Light> mixedLights(reference::Random& random) {
+    std::vector<Light> lights;
+    for (int round = 0; round < 7; ++round) {
+        for (const Made& made : kMade) {
+            Light light;
+            light.filter = made.filter;
+            light.pcssPreset = made.preset;
+            light.type = round == 6 ? LightType::Directional : round % 2 == 0 ? LightType::Spot : LightType::Point;
+            const reference::Vec3 from = random.inBox({-3, 1.5, -4}, {3, 3.5, 2});
+            put(from, light.position);
+            put(normalize(random.inBox({-2, 0, -4}, {2, 0.5, 2}) - from), light.direction);
+            if (round == 6) put(normalize(random.inBox({-1, -1.5, -1}, {1, -0.5, 1})), light.direction);
+            light.outerConeAngle = 0.7f;
+            light.rangeMetres = 8;
+            light.sourceRadius = round == 6 ? 0.04f : 0.25f;
+            lights.push_back(light);
+        }
+    }
+    return lights;
+}
+
 FrameInput mixedRoom() {
     RoomSetup setup{.seed = 60, .widthPx = 64, .heightPx = 56};
-    setup.lights = {.count = 54, .castingShare = 1, .maxRangeMetres = 8, .spreadMetres = 5, .suns = 6};
-    setup.lights.maxSourceRadius = 0.3;
-    setup.lights.filters = kAllBuiltInFilters;
-    setup.lights.pcssPresets = 2;
+    setup.lights.count = 0;
     FrameInput input = makeRoomFrame(setup);
+    reference::Random random(setup.seed);
+    const reference::Shapes shapes = reference::makeRoom(random, setup.objects);
+    input.lights = mixedLights(random);
+    input.shadows = std::make_shared<reference::TestShadows>(
+        reference::buildShadows(shapes, input.lights, {.viewSizePx = 40, .mixDepthKinds = true}));
+    input.lightViews = input.shadows->lightViews;
+    input.settings.filters = kAllBuiltInFilters;
     input.settings.pcfRadius = 2;
+    input.settings.pcssPresetCount = 2;
     input.settings.pcssPresets = {kPcssMedium, PcssTaps{5, 7}, kPcssHigh, kPcssHigh};
     input.settings.patternPerFrame = true;
     return input;

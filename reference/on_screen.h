@@ -32,7 +32,8 @@ Findings checkOnScreen(const std::vector<LightModel>& lights, const CameraModel&
                        std::span<const LightOnScreen> answer, std::span<const std::uint32_t> masks = {},
                        std::uint32_t tilesX = 0, std::uint32_t tilesY = 0);
 
-/// The counts of the answer. `casting` as run() gives it: of those that want shadow views.
-Findings checkReport(const std::vector<LightModel>& all, const CameraModel& camera, const PreparedLights& answer);
+/// The counts of the answer, of `given` lights of which `must` must be visible (checkVisibleLights() counts them).
+/// `casting` as run() gives it: of those that want shadow views.
+Findings checkReport(std::size_t given, std::size_t must, const PreparedLights& answer);
 
 }  // namespace gnomon::reference

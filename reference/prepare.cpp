@@ -11,6 +11,12 @@ double marginOf(const LightModel& light, const CameraModel& camera) {
     return 1e-5 * (1.0 + light.rangeMetres + length(light.position - camera.eye) + sumOfMagnitudes(camera.eye));
 }
 
+/// Room for the cosine of a cone in floats, which cannot tell angles nearer than this apart: metres of depth.
+double coneMarginOf(const LightModel& light) {
+    if (light.type != LightType::Spot) return 0.0;
+    return light.rangeMetres * (1e-5 + 1e-6 / std::max(std::sin(light.outerAngle), 1e-3));
+}
+
 /// Smallest view depth in the light's volume; of the ball alone, or cut with the cone of a spot.
 double nearestViewDepth(const LightModel& light, const CameraModel& camera, bool exact) {
     const double centre = viewDepth(camera, light.position);
@@ -21,6 +27,12 @@ double nearestViewDepth(const LightModel& light, const CameraModel& camera, bool
     const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
     if (angle <= light.outerAngle) return centre - light.rangeMetres;
     return centre - std::max(0.0, light.rangeMetres * std::cos(angle - light.outerAngle));
+}
+
+/// Then phase 1, whatever its roundings, must see a tie.
+bool sameVolume(const LightModel& a, const LightModel& b) {
+    return a.type == b.type && length(a.position - b.position) == 0 && length(a.direction - b.direction) == 0 &&
+           a.rangeMetres == b.rangeMetres && a.outerAngle == b.outerAngle;
 }
 
 /// Number of places where the order contradicts one key.
@@ -34,9 +46,10 @@ std::size_t outOfOrder(const std::vector<LightModel>& lights, const CameraModel&
             before = std::max(before, camera.nearMetres);
             after = std::max(after, camera.nearMetres);
         }
-        const double tolerance = marginOf(lights[i - 1], camera) + marginOf(lights[i], camera);
+        const double tolerance = marginOf(lights[i - 1], camera) + marginOf(lights[i], camera) +
+                                 coneMarginOf(lights[i - 1]) + coneMarginOf(lights[i]);
         if (before > after + tolerance) ++errors;
-        if (before == after && lights[i - 1].hostIndex > lights[i].hostIndex) ++errors;
+        if (sameVolume(lights[i - 1], lights[i]) && lights[i - 1].hostIndex > lights[i].hostIndex) ++errors;
     }
     return errors;
 }

@@ -27,7 +27,7 @@ Verdict isVisible(const LightModel& light, const CameraModel& camera);
 /// Which lights are in the list, and in which order: every light that must be visible is there (unless the list is
 /// full), none twice, directional lights first, the others by nearest view depth. Nearest view depth is that of the
 /// ball or of the exact ball-and-cone, clamped to the near plane or not: one of these four keys must explain the whole
-/// order. Ties by the host's index.
+/// order. Ties, of lights with the same volume, by the host's index.
 struct VisibleReport {
     Findings findings;
     std::size_t must = 0, may = 0;  ///< of all lights

@@ -10,8 +10,6 @@ namespace gnomon::test {
 
 using namespace reference;
 
-namespace {
-
 ShadowInput shadowInputOf(const FrameInput& input, const FrameResult& result) {
     const ShadowSettings& settings = result.settings;
     ShadowInput out;
@@ -32,6 +30,8 @@ ShadowInput shadowInputOf(const FrameInput& input, const FrameResult& result) {
     out.atlases = input.shadows->atlases;
     return out;
 }
+
+namespace {
 
 void expectNone(const Findings& findings, const char* what) {
     EXPECT_TRUE(findings.ok()) << what << ": " << findings.text();
@@ -166,9 +166,10 @@ void checkAnswer(const std::vector<LightModel>& all, const CameraModel& camera, 
     PreparedLights answer;
     answer.visible = result.answer;
     answer.report = result.answerReport;
-    expectNone(checkReport(all, camera, answer), "report of phase 1");
     const std::vector<LightModel> lights = orderLights(all, answer.visible);
-    expectNone(checkVisibleLights(all, lights, camera).findings, "answer of phase 1");
+    const VisibleReport visible = checkVisibleLights(all, lights, camera);
+    expectNone(visible.findings, "answer of phase 1");
+    expectNone(checkReport(all.size(), visible.must, answer), "report of phase 1");
     const gpu::GpuFrame& frame = result.constants;
     const auto tiles = std::size_t(frame.maskTileColumns) * frame.maskTileRows;
     expectNone(checkOnScreen(lights, camera, answer.visible,

@@ -31,6 +31,9 @@ struct Checked {
 /// Everything below, with bounds on what is too close to call.
 Checked checkFrame(const FrameInput& input, const FrameResult& result, const CheckOptions& options = {});
 
+/// What the oracle of phase 4 needs to know of a frame.
+[[nodiscard]] reference::ShadowInput shadowInputOf(const FrameInput& input, const FrameResult& result);
+
 /// Guards, and words that no tile owns, are as they were before the frame.
 void checkCanaries(const FrameResult& result, bool shadows);
 /// Counters and statistics against sums over the buffers.

@@ -113,12 +113,18 @@ reference::ListBuffers FrameResult::lists() const {
 }
 
 Rig::Rig(TestDevice& device, const ContextSetup& setup, const ViewDesc& desc) : device_(device), desc_(desc) {
+    if (const Context* context = device.context(setup)) create(*context);
+}
+
+Rig::Rig(TestDevice& device, const Context& context, const ViewDesc& desc) : device_(device), desc_(desc) {
+    create(context);
+}
+
+void Rig::create(const Context& context) {
     desc_.guardBytes = kGuardBytes;
-    const Context* context = device.context(setup);
-    if (context == nullptr) return;
-    const Result made = View::create(*context, desc_, view_);
+    const Result made = View::create(context, desc_, view_);
     EXPECT_TRUE(made.ok()) << made.message();
-    const Result timed = Timeline::create(*context, {.framesInFlight = desc_.framesInFlight}, timeline_);
+    const Result timed = Timeline::create(context, {.framesInFlight = desc_.framesInFlight}, timeline_);
     EXPECT_TRUE(timed.ok()) << timed.message();
 }
 
@@ -362,10 +368,11 @@ FrameResult Rig::run(const FrameInput& input, const RunOptions& options) {
     return result;
 }
 
-void Rig::runInFlight(const std::vector<FrameInput>& inputs) {
+void Rig::runInFlight(const std::vector<FrameInput>& inputs, const std::function<void(std::size_t)>& before) {
     withTimeline_ = true;
     std::vector<std::unique_ptr<renderer::Commands>> submissions;
     for (const FrameInput& input : inputs) {
+        if (before) before(submissions.size());
         const Result begun = begin(input);
         ASSERT_TRUE(begun.ok()) << begun.message();
         submissions.push_back(std::make_unique<renderer::Commands>(device_.vulkan()));

@@ -1,6 +1,7 @@
 #pragma once
 // One view on one device: uploads a frame's input, runs the phases, reads everything back.
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -77,6 +78,8 @@ class Rig {
 public:
     /// Images are larger than the view by 24 x 16 pixels, for viewport offsets. `desc`: guardBytes is set here.
     Rig(TestDevice& device, const ContextSetup& setup, const ViewDesc& desc);
+    /// With a context of the test's own, which must outlive the rig.
+    Rig(TestDevice& device, const Context& context, const ViewDesc& desc);
     ~Rig();
     Rig(const Rig&) = delete;
     Rig& operator=(const Rig&) = delete;
@@ -84,8 +87,8 @@ public:
     /// Waits for the device. Fails the test where a call of the library fails.
     FrameResult run(const FrameInput& input, const RunOptions& options = {});
     /// One submission per input, all recorded before any is waited for; at most ViewDesc::framesInFlight of them. The
-    /// images are those of the first.
-    void runInFlight(const std::vector<FrameInput>& inputs);
+    /// images are those of the first. `before` is called before each frame is begun.
+    void runInFlight(const std::vector<FrameInput>& inputs, const std::function<void(std::size_t)>& before = {});
     /// Destroys all images, so that the next frame makes new ones.
     void dropImages();
     /// Phase 1 alone: prepare() and beginFrame(). Images are made, nothing is recorded.
@@ -105,6 +108,7 @@ public:
     [[nodiscard]] std::span<const LightOnScreen> answer() const { return answer_.visible; }
 
 private:
+    void create(const Context& context);
     void makeImages(const FrameInput& input);
     void recordUploads(VkCommandBuffer commands, const FrameInput& input);
     void recordFill(VkCommandBuffer commands) const;

@@ -152,6 +152,12 @@ TEST(Prepare, PlantedErrorsAreFound) {
     // The wrong order.
     std::vector<LightModel> reversed(phase.lights.rbegin(), phase.lights.rend());
     EXPECT_FALSE(checkVisibleLights(phase.frame.lights, reversed, camera).findings.ok());
+    // Two lights of one volume: the host's first must be first.
+    std::vector<LightModel> twins(2, phase.lights.back());
+    twins[0].hostIndex = 0;
+    twins[1].hostIndex = 1;
+    EXPECT_TRUE(checkVisibleLights(twins, twins, camera).findings.ok());
+    EXPECT_FALSE(checkVisibleLights(twins, {twins[1], twins[0]}, camera).findings.ok());
     // A mask bit lost, and a stray one.
     for (std::size_t t = 0; t < phase.masks.size(); t += gpu::kLightMaskEntryWords) {
         if (phase.masks[t] == 0) continue;

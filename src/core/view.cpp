@@ -178,12 +178,13 @@ std::uint32_t grown(std::uint64_t used, std::uint64_t capacity, std::uint32_t re
     return std::max(std::min(recommended, most), static_cast<std::uint32_t>(capacity));
 }
 
-// Pools follow the need of the frame that has just finished, where the host allows it.
-Result growPools(View::State& state, std::uint64_t frameNumber) {
-    if (state.desc.mostListEntries == 0 && state.desc.mostVisibilitySlots == 0) return {};
-    if (frameNumber < state.desc.framesInFlight) return {};
+// Pools follow the need of the frame that has just finished, where the host allows it. Without memory for that they stay
+// as they are: overflow loses nothing, and a frame is worth more than its speed.
+void growPools(View::State& state, std::uint64_t frameNumber) {
+    if (state.desc.mostListEntries == 0 && state.desc.mostVisibilitySlots == 0) return;
+    if (state.growthFailed || frameNumber < state.desc.framesInFlight) return;
     FrameStatistics finished;
-    if (!state.readCounters(frameNumber - state.desc.framesInFlight, finished)) return {};
+    if (!state.readCounters(frameNumber - state.desc.framesInFlight, finished)) return;
     const FrameInFlight& slot = state.frames[frameNumber % state.desc.framesInFlight];
     ViewDesc desc = state.desc;
     const std::uint32_t entries =
@@ -202,7 +203,7 @@ Result growPools(View::State& state, std::uint64_t frameNumber) {
     const ViewSizes wanted = viewSizesOf(state.context->device, desc);
     const bool larger =
         wanted.listEntries > state.sizes.listEntries || wanted.visibilitySlots > state.sizes.visibilitySlots;
-    return larger ? state.resize(desc) : Result();
+    if (larger) state.growthFailed = !state.resize(desc).ok();
 }
 
 Result checkKept(const ViewDesc& from, const ViewDesc& to) {
@@ -252,6 +253,7 @@ Result View::State::resize(const ViewDesc& to) {
     if (otherBounds) boundsCells.create(to.shadowBoundsTexels == 0 ? 0 : wanted.boundsCells);
     desc = to;
     desc.prepare = prepareDesc;
+    growthFailed = false;
     sizes = wanted;
     memory = std::move(report);
     return {};
@@ -330,7 +332,7 @@ Result View::beginFrame(const FrameDesc& frame, PrepareReport* report) noexcept 
     FrameInFlight& slot = state.frames[index];
     try {
         if (Result found = state.context->pipelinesFor(frame.settings, state.pipelines); !found) return found;
-        if (Result made = growPools(state, frame.frameNumber); !made) return made;
+        growPools(state, frame.frameNumber);
     } catch (const std::bad_alloc&) {
         return Result::failure(Status::OutOfMemory, "Out of memory while beginning a frame.");
     }

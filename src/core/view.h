@@ -43,6 +43,7 @@ struct GNOMON_HIDDEN View::State {
     std::uint32_t current = 0;
     std::uint64_t lastFrame = 0;   // begun last
     bool anyFrame = false;         // was begun
+    bool growthFailed = false;     // there was no memory for larger pools; not tried again before the next resize
     PassPipelines pipelines = {};  // of the frame begun last
     Timeline* timeline = nullptr;  // likewise
     gpu::GpuFrame frame = {};

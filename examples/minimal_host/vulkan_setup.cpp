@@ -1,7 +1,6 @@
 #include "vulkan_setup.h"
 
 #include <cstdio>
-#include <ranges>
 #include <stdexcept>
 #include <string>
 
@@ -48,7 +47,7 @@ Device::Device(std::uint32_t index) {
 
 Device::~Device() {
     vkDeviceWaitIdle(handle);
-    for (const std::function<void()>& destroy : undo_ | std::views::reverse) destroy();
+    for (auto destroy = undo_.rbegin(); destroy != undo_.rend(); ++destroy) (*destroy)();
     vkDestroyDevice(handle, nullptr);
     vkDestroyInstance(instance, nullptr);
 }

@@ -47,7 +47,7 @@ struct ViewDesc {
     std::uint32_t visibilityBits = 8;
     /// Above 0: a pool may grow up to this. If a frame that has finished would have needed more, beginFrame() makes the
     /// pool as large as FrameStatistics recommends. It then allocates, and frees the old buffer when its frames have
-    /// finished.
+    /// finished. Without memory for that the pools stay as they are until the next resize().
     std::uint32_t mostListEntries = 0;
     std::uint32_t mostVisibilitySlots = 0;
     std::uint32_t maxShadowViews = 4096;

@@ -197,15 +197,18 @@ bool isGeneratedShader(const Include& include) {
 }
 
 // Why `room` may not include this, or nothing.
+// What the library is asked and answers in phase 1, in plain data: all that the oracle may see of its public face.
+constexpr const char* kDescriptions[] = {"include/gnomon/scene.h", "include/gnomon/settings.h",
+                                         "include/gnomon/prepare.h", "include/gnomon/result.h"};
+
 std::string refusal(const std::string& room, const Allowed& allowed, const Include& include, const std::string& target,
                     bool shader) {
     if (include.form == Include::Form::Macro) return "a computed include cannot be checked";
     if (shader && room == "src" && include.name == "gnomon_host_provider.glsl") return "";  // the host's own file
     if (!target.empty()) {
         const std::string other = roomOf(target);
-        const bool open =
-            std::ranges::find(allowed.rooms, other) != allowed.rooms.end() ||
-            (room == "reference" && (target == "include/gnomon/scene.h" || target == "include/gnomon/result.h"));
+        const bool open = std::ranges::find(allowed.rooms, other) != allowed.rooms.end() ||
+                          (room == "reference" && std::ranges::find(kDescriptions, target) != std::end(kDescriptions));
         return open ? "" : "'" + room + "' must not see '" + (other.empty() ? target : other) + "'";
     }
     if (shader) return "no such file in the project";

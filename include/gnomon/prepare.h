@@ -85,7 +85,7 @@ public:
     Prepare(const Prepare&) = delete;
     Prepare& operator=(const Prepare&) = delete;
 
-    /// Another maximum extent; which lights were kept last frame is still known. run() must come before write().
+    /// Other limits; which lights were kept last frame is still known. run() must come before write().
     Result resize(const PrepareDesc& desc) noexcept;
     /// Culls, sorts and measures. Fails with a sentence on an extent of zero or above the maximum, a camera that is not
     /// rigid or not finite, or a light with a value that is not finite or outside its range; nothing can be written

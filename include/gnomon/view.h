@@ -202,7 +202,7 @@ public:
     /// waits. False if the frame is not among them or had no recordEndFrame().
     bool statistics(std::uint64_t frameNumber, FrameStatistics& out) const noexcept;
 
-    /// Where a buffer's contents can be copied from, by its name in the memory report (for tools and tests).
+    /// Where a buffer's contents can be copied from, by its name in the memory report (for tools and tests); or null.
     [[nodiscard]] VkBuffer buffer(const char* name) const noexcept;
 
     struct State;

@@ -29,13 +29,14 @@ TEST_P(CamerasTest, EveryKind) {
     }
 }
 
-constexpr std::pair<std::uint32_t, std::uint32_t> kExtents[] = {{1, 1},   {7, 5},   {8, 8},   {9, 9},   {1, 70}, {130, 3},
-                                                                {63, 65}, {64, 64}, {65, 63}, {33, 31}, {97, 40}};
+constexpr std::pair<std::uint32_t, std::uint32_t> kExtents[] = {
+    {1, 1}, {7, 5}, {8, 8}, {9, 9}, {1, 70}, {130, 3}, {63, 65}, {64, 64}, {65, 63}, {33, 31}, {97, 40}};
 
 TEST_P(CamerasTest, Extents) {
     for (const auto& [width, height] : kExtents) {
         SCOPED_TRACE(std::to_string(width) + "x" + std::to_string(height));
-        const FrameInput input = makeRoomFrame({.seed = 21, .widthPx = width, .heightPx = height, .shadows = {.viewSizePx = 16}});
+        const FrameInput input =
+            makeRoomFrame({.seed = 21, .widthPx = width, .heightPx = height, .shadows = {.viewSizePx = 16}});
         Rig rig(device(), {}, viewDescFor(input));
         ASSERT_TRUE(rig.ok());
         checkFrame(input, rig.run(input));
@@ -126,7 +127,8 @@ void checkAddressing(TestDevice& device, std::uint32_t width, std::uint32_t heig
     }
 }
 
-// At 8K a software device needs a minute for nothing but empty work groups: strips there, unless a full run is asked for.
+// At 8K a software device needs a minute for nothing but empty work groups: strips there, unless a full run is asked
+// for.
 TEST_P(CamerasTest, AddressingAt8K) {
     checkAddressing(device(), 7680, 24);
     checkAddressing(device(), 24, 4320);

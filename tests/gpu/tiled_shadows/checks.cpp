@@ -112,7 +112,8 @@ void checkStatistics(const FrameResult& r, const Sums& sums) {
     const FrameStatistics& s = r.statistics;
     const auto tiles = static_cast<std::uint32_t>(r.slotIds.size());
     const bool fixed = r.settings.listReservation == ListReservation::Fixed;
-    EXPECT_EQ(s.listEntries, fixed ? tiles * gpu::roundUpToEarlyWord(r.settings.fixedListEntriesPerTile) : r.counters.listEntries);
+    EXPECT_EQ(s.listEntries,
+              fixed ? tiles * gpu::roundUpToEarlyWord(r.settings.fixedListEntriesPerTile) : r.counters.listEntries);
     EXPECT_EQ(s.visibilitySlots, r.counters.visibilitySlots);
     EXPECT_EQ(s.listOverflowTiles, sums.withoutSpace);
     EXPECT_EQ(s.accurateExceedsApproximate, 0u);
@@ -195,7 +196,8 @@ Checked checkFrame(const FrameInput& input, const FrameResult& result, const Che
     expectNone(checkGpuLights(all, camera, result.lights), "lights");
     out.lights = orderLights(all, result.lights);
     if (options.depths) expectNone(checkTileDepths(out.grid, result.depthRanges), "hierarchical depth");
-    out.expected = findLights(out.grid, out.lights, result.settings.dropLightsFacedAway && result.settings.facedAwayIsDark);
+    out.expected =
+        findLights(out.grid, out.lights, result.settings.dropLightsFacedAway && result.settings.facedAwayIsDark);
     const ListBuffers lists = result.lists();
     out.approximate = checkApproximate(out.grid, out.expected, out.lights.size(), result.groupMasks, lists);
     expectNone(out.approximate.findings, "find lights approximate");

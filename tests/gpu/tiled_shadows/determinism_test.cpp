@@ -58,8 +58,7 @@ TEST_P(DeterminismTest, ViewsSideBySide) {
     const FrameInput a = crowdedRoom(31), b = crowdedRoom(32), c = crowdedRoom(31, only(Filter::Hard));
     std::unique_ptr<Context> second;
     ASSERT_TRUE(Context::create(device().contextDesc({}), second).ok());  // one more, of the same kind
-    Rig one(device(), {}, viewDescFor(a)), two(device(), {}, viewDescFor(b)),
-        three(device(), {}, viewDescFor(c));
+    Rig one(device(), {}, viewDescFor(a)), two(device(), {}, viewDescFor(b)), three(device(), {}, viewDescFor(c));
     ASSERT_TRUE(one.ok() && two.ok() && three.ok());
     const auto oneFirst = decodeFinalLists(one.run(a)), twoFirst = decodeFinalLists(two.run(b)),
                threeFirst = decodeFinalLists(three.run(c));

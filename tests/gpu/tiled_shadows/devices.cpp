@@ -70,7 +70,9 @@ Session& session() {
 
 }  // namespace
 
-renderer::VulkanInstance& testInstance() { return *session().instance; }
+renderer::VulkanInstance& testInstance() {
+    return *session().instance;
+}
 
 bool fullRun() {
     const char* value = std::getenv("GNOMON_FULL");
@@ -94,8 +96,8 @@ std::string deviceName(const ::testing::TestParamInfo<std::size_t>& info) {
 
 TestDevice::TestDevice(const renderer::VulkanInstance& instance, const renderer::DeviceInfo& info)
     : instance_(instance), device_(std::make_unique<renderer::Device>(instance, info)) {
-    std::printf("device: %s, %s, subgroups of %u (%u to %u)\n", info.name.c_str(), info.driver.c_str(), info.subgroupSize,
-                info.minSubgroupSize, info.maxSubgroupSize);
+    std::printf("device: %s, %s, subgroups of %u (%u to %u)\n", info.name.c_str(), info.driver.c_str(),
+                info.subgroupSize, info.minSubgroupSize, info.maxSubgroupSize);
 }
 
 ContextDesc TestDevice::contextDesc(const ContextSetup& setup) const {
@@ -132,13 +134,17 @@ TestDevice& GpuTest::device() {
     return *slot;
 }
 
-void GpuTest::SetUp() { testInstance().messages().clear(); }
+void GpuTest::SetUp() {
+    testInstance().messages().clear();
+}
 
 void GpuTest::TearDown() {
     for (const std::string& message : testInstance().messages().messages()) ADD_FAILURE() << message;
     testInstance().messages().clear();
 }
 
-TEST(Devices, AtLeastOneIsFound) { EXPECT_FALSE(deviceIndices().empty()); }
+TEST(Devices, AtLeastOneIsFound) {
+    EXPECT_FALSE(deviceIndices().empty());
+}
 
 }  // namespace gnomon::test

@@ -51,8 +51,8 @@ protected:
     [[nodiscard]] static TestDevice& device();
 };
 
-#define GNOMON_ON_EVERY_DEVICE(suite)                                                                   \
-    INSTANTIATE_TEST_SUITE_P(Devices, suite, ::testing::ValuesIn(::gnomon::test::deviceIndices()),      \
+#define GNOMON_ON_EVERY_DEVICE(suite)                                                              \
+    INSTANTIATE_TEST_SUITE_P(Devices, suite, ::testing::ValuesIn(::gnomon::test::deviceIndices()), \
                              ::gnomon::test::deviceName)
 
 }  // namespace gnomon::test

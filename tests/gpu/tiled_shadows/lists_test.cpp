@@ -42,7 +42,8 @@ TEST_P(ListsTest, EverySubgroupSize) {
     const FrameInput input = makeRoomFrame({.seed = 2});
     const renderer::DeviceInfo& info = device().vulkan().info();
     std::vector<std::vector<DecodedEntry>> first;
-    for (std::uint32_t size = std::max(4u, info.minSubgroupSize); size <= std::min(64u, info.maxSubgroupSize); size *= 2) {
+    for (std::uint32_t size = std::max(4u, info.minSubgroupSize); size <= std::min(64u, info.maxSubgroupSize);
+         size *= 2) {
         SCOPED_TRACE(size);
         Rig rig(device(), {.subgroupSize = size}, viewDescFor(input));
         ASSERT_TRUE(rig.ok());
@@ -91,12 +92,14 @@ TEST_P(ListsTest, NormalsFromDepthOnAPlane) {
 
 /// Min and max device depth per tile, background included or not.
 std::vector<float> pyramidOf(const FrameInput& input, bool withBackground, float background) {
-    const std::uint32_t tilesX = gpu::divideRoundingUp(input.widthPx, 8), tilesY = gpu::divideRoundingUp(input.heightPx, 8);
+    const std::uint32_t tilesX = gpu::divideRoundingUp(input.widthPx, 8),
+                        tilesY = gpu::divideRoundingUp(input.heightPx, 8);
     std::vector<float> out(2 * std::size_t(tilesX) * tilesY);
     for (std::size_t tile = 0; tile < out.size() / 2; ++tile) {
         float low = 2, high = -1;
         for (std::uint32_t i = 0; i < 64; ++i) {
-            const std::uint32_t x = tile % tilesX * 8 + i % 8, y = static_cast<std::uint32_t>(tile / tilesX) * 8 + i / 8;
+            const std::uint32_t x = tile % tilesX * 8 + i % 8,
+                                y = static_cast<std::uint32_t>(tile / tilesX) * 8 + i / 8;
             if (x >= input.widthPx || y >= input.heightPx) continue;
             const float d = input.receivers.depth[std::size_t(y) * input.widthPx + x];
             if (!withBackground && d == background) continue;

@@ -60,9 +60,9 @@ TEST_P(OverflowTest, PoolsOfEverySize) {
         struct Pools {
             std::uint32_t entries, slots;
         };
-        for (const Pools pools : {Pools{1, 1}, Pools{2, slots}, Pools{3, 2}, Pools{61, 7}, Pools{entries, 1},
-                                  Pools{entries / 2, slots / 2}, Pools{entries - 1, slots}, Pools{entries, slots - 1},
-                                  Pools{entries, slots}}) {
+        for (const Pools pools :
+             {Pools{1, 1}, Pools{2, slots}, Pools{3, 2}, Pools{61, 7}, Pools{entries, 1}, Pools{entries / 2, slots / 2},
+              Pools{entries - 1, slots}, Pools{entries, slots - 1}, Pools{entries, slots}}) {
             SCOPED_TRACE(std::to_string(pools.entries) + " entries, " + std::to_string(pools.slots) + " slots");
             ViewDesc desc = viewDescFor(input);
             desc.listEntries = pools.entries;

@@ -22,8 +22,8 @@ void move(float position[3], reference::Vec3 by) {
     position[2] += static_cast<float>(by.z);
 }
 
-/// A room of its own, far from the origin at times, with cones from hair-thin to half-spaces and ranges of centimetres to
-/// kilometres.
+/// A room of its own, far from the origin at times, with cones from hair-thin to half-spaces and ranges of centimetres
+/// to kilometres.
 FrameInput randomFrame(std::uint64_t seed) {
     reference::Random random(seed);
     RoomSetup setup;
@@ -100,7 +100,8 @@ TEST_P(PropertyTest, NoLightIsEverLost) {
     }
     EXPECT_GT(must, done * 20);
     EXPECT_LT(double(may), 0.05 * double(must));
-    std::printf("  %llu seeds: must %zu, may %zu, bytes %zu\n", static_cast<unsigned long long>(done), must, may, bytes);
+    std::printf("  %llu seeds: must %zu, may %zu, bytes %zu\n", static_cast<unsigned long long>(done), must, may,
+                bytes);
 }
 
 // Pools of random, too small sizes under random views: lists stay sound.

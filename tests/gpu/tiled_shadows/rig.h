@@ -50,15 +50,15 @@ struct FrameResult {
     std::vector<float> depthRanges;
     std::vector<std::uint32_t> tileLightMasks;
     std::vector<std::uint32_t> groupMasks, slotIds, approximateCounts, earlyList, earlyCounts, finalList, finalCounts,
-        visibility, evaluateTiles;  ///< per-tile ones: of the active tiles, the others whole
+        visibility, evaluateTiles;        ///< per-tile ones: of the active tiles, the others whole
     std::vector<gpu::vec2> shadowBounds;  ///< least and greatest depths; see src/shadow_bounds
     gpu::GpuCounters counters{};
     FrameStatistics statistics;
     bool hasStatistics = false;
     std::vector<TimelineRow> rows;
     std::uint32_t listCapacity = 0, slotCapacity = 0;
-    std::size_t brokenGuards = 0;     ///< words outside the contents of a buffer that are no longer kCanary
-    std::size_t beyondTiles = 0;      ///< words of per-tile arrays beyond the active tiles, likewise
+    std::size_t brokenGuards = 0;  ///< words outside the contents of a buffer that are no longer kCanary
+    std::size_t beyondTiles = 0;   ///< words of per-tile arrays beyond the active tiles, likewise
     ShadowSettings settings;
 
     [[nodiscard]] std::uint32_t slotWords() const { return gpu::visibilitySlotWords(settings.visibilityBits); }

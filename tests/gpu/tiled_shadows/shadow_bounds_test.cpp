@@ -1,4 +1,5 @@
-// The pass of the shadow bounds: every block of every level against the atlas; phase 4 has the same bits with and without.
+// The pass of the shadow bounds: every block of every level against the atlas; phase 4 has the same bits with and
+// without.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +16,8 @@ class ShadowBoundsTest : public GpuTest {};
 GNOMON_ON_EVERY_DEVICE(ShadowBoundsTest);
 
 /// Noise at some places and a slope at others, so that neighbouring blocks differ.
-reference::AtlasCopy randomAtlas(std::mt19937& random, std::uint32_t width, std::uint32_t height, std::uint32_t layers) {
+reference::AtlasCopy randomAtlas(std::mt19937& random, std::uint32_t width, std::uint32_t height,
+                                 std::uint32_t layers) {
     reference::AtlasCopy atlas;
     atlas.widthPx = width, atlas.heightPx = height, atlas.layers = layers;
     std::uniform_real_distribution<float> unit;
@@ -59,7 +61,8 @@ struct Compared {
     std::size_t equal = 0, different = 0, untouched = 0, written = 0;
 };
 
-/// All cells of all atlases: those that a view touches must hold their bounds, all others what the buffer was filled with.
+/// All cells of all atlases: those that a view touches must hold their bounds, all others what the buffer was filled
+/// with.
 Compared compareAll(const reference::TestShadows& shadows, const FrameResult& result) {
     Compared found;
     std::uint32_t firstCell = 0;
@@ -95,9 +98,9 @@ TEST_P(ShadowBoundsTest, EveryBlockOfEveryLevel) {
     std::mt19937 random(5);
     auto shadows = std::make_shared<reference::TestShadows>();
     // Sides that are no multiple of a cell, a block or two; several layers.
-    shadows->atlases = {randomAtlas(random, 600, 300, 2), randomAtlas(random, 256, 512, 1), randomAtlas(random, 77, 1025, 1),
-                        randomAtlas(random, 8, 8, 3)};
-    shadows->views = {viewAt(0, 0, 0, 0, 64, 64),  viewAt(0, 1, 250, 40, 20, 8), viewAt(0, 1, 590, 290, 10, 10),
+    shadows->atlases = {randomAtlas(random, 600, 300, 2), randomAtlas(random, 256, 512, 1),
+                        randomAtlas(random, 77, 1025, 1), randomAtlas(random, 8, 8, 3)};
+    shadows->views = {viewAt(0, 0, 0, 0, 64, 64),    viewAt(0, 1, 250, 40, 20, 8),   viewAt(0, 1, 590, 290, 10, 10),
                       viewAt(1, 0, 100, 300, 90, 9), viewAt(2, 0, 60, 1000, 17, 25), viewAt(2, 0, 0, 10, 77, 500),
                       viewAt(3, 2, 0, 0, 8, 8)};
     FrameInput input = makeRoomFrame({.seed = 3, .widthPx = 16, .heightPx = 16});
@@ -156,7 +159,9 @@ TEST_P(ShadowBoundsTest, SameBitsWithAndWithout) {
         RoomSetup setup{.seed = seed, .widthPx = 64, .heightPx = 48};
         setup.lights = {.count = 16, .castingShare = 1, .maxRangeMetres = 9, .spreadMetres = 5, .suns = 2};
         setup.lights.maxSourceRadius = seed % 2 == 0 ? 0.6 : 0.05;
-        setup.shadows = {.viewSizePx = seed == 51 ? 200u : 72u, .atlasCount = static_cast<std::uint32_t>(seed % 4 + 1), .mixDepthKinds = true,
+        setup.shadows = {.viewSizePx = seed == 51 ? 200u : 72u,
+                         .atlasCount = static_cast<std::uint32_t>(seed % 4 + 1),
+                         .mixDepthKinds = true,
                          .infiniteFar = seed % 2 == 0};
         setup.objects = 20;
         FrameInput input = makeRoomFrame(setup);

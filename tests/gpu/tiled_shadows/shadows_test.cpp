@@ -23,16 +23,16 @@ struct FilterCase {
     double mostAmbiguous, mostLoose;  // shares of (pixel, light) pairs with more than one, two acceptable values
 };
 constexpr FilterCase kFilters[] = {
-    {Filter::Hard, 1, {}, 8, 0.001, 0.001},        {Filter::Hard, 1, {}, 4, 0.001, 0.001},
-    {Filter::Pcf, 1, {}, 8, 0.006, 0.001},         {Filter::Pcf, 2, {}, 4, 0.001, 0.001},
-    {Filter::Pcf, 3, {}, 8, 0.006, 0.001},         {kOff, 1, {}, 8, 0.0, 0.0},
+    {Filter::Hard, 1, {}, 8, 0.001, 0.001},         {Filter::Hard, 1, {}, 4, 0.001, 0.001},
+    {Filter::Pcf, 1, {}, 8, 0.006, 0.001},          {Filter::Pcf, 2, {}, 4, 0.001, 0.001},
+    {Filter::Pcf, 3, {}, 8, 0.006, 0.001},          {kOff, 1, {}, 8, 0.0, 0.0},
     {Filter::Pcss, 1, kPcssMedium, 8, 0.01, 0.001}, {Filter::Pcss, 1, kPcssHigh, 8, 0.01, 0.001},
-    {Filter::Pcss, 1, kPcssLow, 4, 0.001, 0.001},  {Filter::Pcss, 1, {1, 1}, 8, 0.01, 0.001}};
+    {Filter::Pcss, 1, kPcssLow, 4, 0.001, 0.001},   {Filter::Pcss, 1, {1, 1}, 8, 0.01, 0.001}};
 
 void checkFilter(TestDevice& device, FrameInput input, const FilterCase& filter) {
     const int number = filter.filter ? int(*filter.filter) : -1;
-    SCOPED_TRACE("filter " + std::to_string(number) + " radius " + std::to_string(filter.radius) +
-                 " search taps " + std::to_string(filter.taps.searchTaps) + " bits " + std::to_string(filter.bits));
+    SCOPED_TRACE("filter " + std::to_string(number) + " radius " + std::to_string(filter.radius) + " search taps " +
+                 std::to_string(filter.taps.searchTaps) + " bits " + std::to_string(filter.bits));
     useFilter(input, filter.filter.value_or(Filter::Pcf));
     if (!filter.filter) input.settings.filters = 0;
     input.settings.pcfRadius = filter.radius;
@@ -52,8 +52,8 @@ void checkFilter(TestDevice& device, FrameInput input, const FilterCase& filter)
         EXPECT_GT(s.absent, 3u);
         EXPECT_GT(s.exactBytes, s.bytes / 2);
     }
-    std::printf("    filter %d: pairs %zu ambiguous %.4f loose %.4f slots %zu lit %zu absent %zu\n", number,
-                s.pairs, s.ambiguousShare(), s.looseShare(), s.slots, s.allLit, s.absent);
+    std::printf("    filter %d: pairs %zu ambiguous %.4f loose %.4f slots %zu lit %zu absent %zu\n", number, s.pairs,
+                s.ambiguousShare(), s.looseShare(), s.slots, s.allLit, s.absent);
 }
 
 TEST_P(ShadowsTest, EveryFilter) {
@@ -85,14 +85,11 @@ TEST_P(ShadowsTest, EveryDepthBias) {
         bool facedAwayIsDark;
         Filter filter;
     };
-    constexpr Mode kModes[] = {{DepthBias::Oriented, true, Filter::Hard},
-                               {DepthBias::Oriented, false, Filter::Hard},
-                               {DepthBias::OrientedConstant, true, Filter::Hard},
-                               {DepthBias::OrientedConstant, false, Filter::Hard},
-                               {DepthBias::Unbiased, true, Filter::Hard},
-                               {DepthBias::Unbiased, false, Filter::Hard},
-                               {DepthBias::OrientedConstant, false, Filter::Pcss},
-                               {DepthBias::Unbiased, true, Filter::Pcss}};
+    constexpr Mode kModes[] = {
+        {DepthBias::Oriented, true, Filter::Hard},          {DepthBias::Oriented, false, Filter::Hard},
+        {DepthBias::OrientedConstant, true, Filter::Hard},  {DepthBias::OrientedConstant, false, Filter::Hard},
+        {DepthBias::Unbiased, true, Filter::Hard},          {DepthBias::Unbiased, false, Filter::Hard},
+        {DepthBias::OrientedConstant, false, Filter::Pcss}, {DepthBias::Unbiased, true, Filter::Pcss}};
     std::vector<std::vector<std::uint32_t>> bytes;
     for (const Mode& mode : kModes) {
         SCOPED_TRACE("bias " + std::to_string(int(mode.bias)) + " faced away is dark: " +
@@ -241,7 +238,8 @@ TEST_P(ShadowsTest, ShadowBounds) {
     reference::Random random(setup.seed + 1);
     const reference::Shapes others = reference::makeRoom(random, 4);
     auto shadows = std::make_shared<reference::TestShadows>(*input.shadows);
-    for (const ShadowView& view : shadows->views) reference::renderShadowView(others, view, shadows->atlases[view.atlas]);
+    for (const ShadowView& view : shadows->views)
+        reference::renderShadowView(others, view, shadows->atlases[view.atlas]);
     input.shadows = shadows;
     input.shadowViewsChanged = true;
     const FrameResult result = bounded.run(input);
@@ -257,7 +255,11 @@ TEST_P(ShadowsTest, EveryKindOfShadowView) {
     setup.lights.suns = 2;
     for (const std::uint32_t size : {8u, 33u}) {
         for (const bool reversed : {true, false}) {
-            setup.shadows = {.viewSizePx = size, .cellsPerRow = 5, .atlasCount = 4, .layers = 3, .reversed = reversed,
+            setup.shadows = {.viewSizePx = size,
+                             .cellsPerRow = 5,
+                             .atlasCount = 4,
+                             .layers = 3,
+                             .reversed = reversed,
                              .infiniteFar = false};
             FrameInput input = makeRoomFrame(setup);
             input.settings.pcfRadius = size == 8 ? 3 : 2;
@@ -299,8 +301,8 @@ TEST_P(ShadowsTest, OblongCascades) {
         light.sourceRadius = 0.1f;
         input.lightViews.push_back({static_cast<std::uint32_t>(shadows->views.size()), 1});
         input.lights.push_back(light);
-        ShadowView view = reference::makeShadowView({reversed ? 1.0 : -1.0, 6, 0}, direction, down, 5.0, 0.1, 10.0, true,
-                                                    reversed);
+        ShadowView view =
+            reference::makeShadowView({reversed ? 1.0 : -1.0, 6, 0}, direction, down, 5.0, 0.1, 10.0, true, reversed);
         view.xPx = reversed ? 1 : 45;
         view.yPx = 2;
         view.widthPx = 40;

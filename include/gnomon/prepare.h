@@ -66,8 +66,8 @@ struct LightOnScreen {
     float nearestMetres = 0.0f, farthestMetres = 0.0f;
 };
 
-/// What run() answers: the visible lights in the order of the lists, directional ones first, then by nearest view
-/// depth. Valid until the next run().
+/// What run() answers: the visible lights in the order of the lists, directional ones first in the host's order, then by
+/// nearest view depth. Valid until the next run().
 struct PreparedLights {
     std::span<const LightOnScreen> visible;
     PrepareReport report;

@@ -180,7 +180,7 @@ std::uint32_t grown(std::uint64_t used, std::uint64_t capacity, std::uint32_t re
 
 // Pools follow the need of the frame that has just finished, where the host allows it. Without memory for that they stay
 // as they are: overflow loses nothing, and a frame is worth more than its speed.
-void growPools(View::State& state, std::uint64_t frameNumber) {
+void growPools(View::State& state, std::uint64_t frameNumber) noexcept {
     if (state.desc.mostListEntries == 0 && state.desc.mostVisibilitySlots == 0) return;
     if (state.growthFailed || frameNumber < state.desc.framesInFlight) return;
     FrameStatistics finished;
@@ -203,7 +203,12 @@ void growPools(View::State& state, std::uint64_t frameNumber) {
     const ViewSizes wanted = viewSizesOf(state.context->device, desc);
     const bool larger =
         wanted.listEntries > state.sizes.listEntries || wanted.visibilitySlots > state.sizes.visibilitySlots;
-    if (larger) state.growthFailed = !state.resize(desc).ok();
+    if (!larger) return;
+    try {
+        state.growthFailed = !state.resize(desc).ok();
+    } catch (const std::bad_alloc&) {
+        state.growthFailed = true;
+    }
 }
 
 Result checkKept(const ViewDesc& from, const ViewDesc& to) {
@@ -332,10 +337,10 @@ Result View::beginFrame(const FrameDesc& frame, PrepareReport* report) noexcept 
     FrameInFlight& slot = state.frames[index];
     try {
         if (Result found = state.context->pipelinesFor(frame.settings, state.pipelines); !found) return found;
-        growPools(state, frame.frameNumber);
     } catch (const std::bad_alloc&) {
         return Result::failure(Status::OutOfMemory, "Out of memory while beginning a frame.");
     }
+    growPools(state, frame.frameNumber);
     state.buffers.release(state.context->device, frame.frameNumber, state.desc.framesInFlight);
     slot.frameNumber = ~0ull;
     slot.ended = false;

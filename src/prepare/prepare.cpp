@@ -189,8 +189,12 @@ Result Prepare::resize(const PrepareDesc& desc) noexcept {
     try {
         const std::uint32_t columns = divideRoundingUp(desc.maxWidthPx, gpu::kMaskTileSizePx);
         const std::uint32_t rows = divideRoundingUp(desc.maxHeightPx, gpu::kMaskTileSizePx);
-        s.grid.create(rows);
-        s.masks.create(columns, rows);
+        prepare::ScreenGrid grid;
+        prepare::TileLightMasks masks;
+        grid.create(rows);
+        masks.create(columns, rows);
+        s.grid = std::move(grid);
+        s.masks = std::move(masks);
     } catch (const std::bad_alloc&) {
         return Result::failure(Status::OutOfMemory, "Prepare::resize found no memory; lower the maximum extent.");
     }

@@ -1,4 +1,5 @@
-// Time of phase 1 (Prepare::run) on one core, the whole call: validation, culling, sort, zBins, tile light masks.
+// Time of phase 1 (Prepare::run and Prepare::write) on one core, the whole call: validation, culling, sort, zBins, tile
+// light masks.
 //
 // Light distributions, all seeded, all lights visible, half of them spots (half-angle 0.2 to 1.0 rad, any direction),
 // camera with a vertical field of view of 60 degrees at the origin, infinite far, reversed Z:
@@ -113,10 +114,13 @@ void prepareLights(benchmark::State& state, Distribution distribution) {
     input.camera = makeCamera(aspect);
     input.widthPx = width, input.heightPx = height;
     input.lights = lights;
+    gnomon::PreparedLights prepared;
     gnomon::PrepareReport report;
     for (auto _ : state) {
-        const gnomon::Result result =
-            prepare->run(input, {frame.data(), gpuLights.data(), zBins.data(), masks.data()}, report);
+        gnomon::Result result = prepare->run(input, prepared);
+        if (result) {
+            result = prepare->write({}, 0, {frame.data(), gpuLights.data(), zBins.data(), masks.data()}, &report);
+        }
         if (!result) {
             state.SkipWithError(result.message());
             break;

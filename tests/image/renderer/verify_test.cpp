@@ -72,7 +72,9 @@ TEST_P(Verify, AcneAndLeakStayWithinTheirLimits) {
         EXPECT_LE(f.share(f.acne + f.leak), kMostAcneAndLeak);
         EXPECT_LE(f.share(f.contactLeak), kMostContactLeak);
         // Texels are large in so small an atlas: what touches within one is lost.
-        if (f.contacts > 500) EXPECT_LE(f.contactLeakOfContacts(), 0.3);
+        if (f.contacts > 500) {
+            EXPECT_LE(f.contactLeakOfContacts(), 0.3);
+        }
     }
 }
 

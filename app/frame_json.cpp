@@ -1,6 +1,7 @@
 #include "app/frame_json.h"
 
 #include <span>
+#include <utility>
 
 #include "app/build_info.h"
 #include "app/frame_table.h"
@@ -20,18 +21,20 @@ Json lightsOf(const PrepareReport& lights) {
 
 Json passesOf(const std::vector<TimelineRow>& passes) {
     Json out = Json::array();
-    for (const TimelineRow& pass : passes)
-        out.push_back({{"name", pass.name},
-                       {"phase", phaseName(pass.phase)},
-                       {"drawing", pass.kind == RowKind::Drawing},
-                       {"ms", pass.milliseconds()},
-                       {"beginMs", pass.beginMilliseconds}});
+    for (const TimelineRow& pass : passes) {
+        Json row = {{"name", pass.name}};
+        row.update(sortOf(pass.phase, pass.kind));
+        row["ms"] = pass.milliseconds();
+        row["beginMs"] = pass.beginMilliseconds;
+        out.push_back(std::move(row));
+    }
     return out;
 }
 
 Json memoryOf(const std::vector<renderer::MemoryUseRow>& rows) {
     Json library = Json::object(), host = Json::object();
-    for (const renderer::MemoryUseRow& row : rows) (row.library ? library : host)[row.name] = row.bytes;
+    for (const renderer::MemoryUseRow& row : rows)
+        (row.library ? library : host)[row.name] = {{"bytes", row.bytes}, {"copies", row.copies}};
     return {{"library", library}, {"renderer", host}};
 }
 
@@ -48,6 +51,10 @@ Json describe(const Session& session) {
             {"triangles", renderer::triangleCount(session.scene())},
             {"extent", {session.rendererDesc().frame.widthPx, session.rendererDesc().frame.heightPx}},
             {"settings", valuesOf(session.settings())}};
+}
+
+Json sortOf(Phase phase, RowKind kind) {
+    return {{"phase", phaseName(phase)}, {"kind", kindName(kind)}};
 }
 
 Json countersOf(const FrameResult& result) {
@@ -82,7 +89,7 @@ Json describe(const Session& session, const FrameResult& result) {
     out["drawingMs"] = totals.drawing;
     out["computeMs"] = totals.compute;
     out["prepareCpuMs"] = report.statistics.prepareMilliseconds;
-    out["memoryBytes"] = memoryOf(result.memory);
+    out["memory"] = memoryOf(result.memory);
     out["capacities"] = {{"listEntries", result.library.listEntries},
                          {"visibilitySlots", result.library.visibilitySlots},
                          {"poolsCapped", result.library.poolsCapped}};

@@ -12,6 +12,8 @@ using Json = nlohmann::ordered_json;
 
 /// Program, device, scene and every setting: what a measurement must state.
 Json describe(const Session& session);
+/// Phase and kind of a pass: "compute", "drawing" or "transfer".
+Json sortOf(Phase phase, RowKind kind);
 Json countersOf(const FrameResult& result);
 Json describe(const Session& session, const FrameResult& result);
 void writeJson(const Json& json, const std::filesystem::path& file);

@@ -25,6 +25,13 @@ void complain(std::string sentence) {
     std::fputs(("gnomon: " + sentence + "\n").c_str(), stderr);
 }
 
+// What is wrong with a command line that names no command and asks for no help. It begins with `first`.
+std::string withoutCommand(const std::string& first) {
+    if (first.empty()) return "A command is missing; gnomon --help lists them.";
+    if (first.front() != '-') return fmt::format("There is no command '{}'; gnomon --help lists them.", first);
+    return fmt::format("'{}' is no option here, and a command is missing; gnomon --help lists both.", first);
+}
+
 int parseAndWork(int argc, char** argv) {
     CLI::App app("Tiled deferred shadows: renders, measures and verifies them, compares pictures.", "gnomon");
     app.set_version_flag("--version", fmt::format("gnomon {} ({})", version(), commit()));
@@ -50,8 +57,7 @@ int parseAndWork(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-        if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-')
-            throw UsageError(fmt::format("There is no command '{}'; gnomon --help lists them.", argv[1]));
+        if (app.get_subcommands().empty()) throw UsageError(withoutCommand(argc > 1 ? argv[1] : ""));
         throw UsageError(error.what());
     }
     const int code = work();

@@ -26,6 +26,11 @@ const CLI::Validator& fileName() {
     return validator;
 }
 
+bool liesIn(const std::string& file, const std::string& folder) {
+    if (file.empty() || folder.empty()) return false;
+    return canonical(file).parent_path() == (canonical(folder) / "file").parent_path();
+}
+
 void checkOutputs(std::span<const std::string> outputs, std::span<const std::string> inputs) {
     std::set<std::filesystem::path> read, written;
     for (const std::string& input : inputs)

@@ -14,7 +14,6 @@
 namespace gnomon::app {
 namespace {
 
-constexpr std::uint32_t kFixedListEntriesPerTile = 32;
 // The paper's footnote 3.
 constexpr renderer::HardwareBias kPaperBias = {.slopeFactor = 1.0f};
 // With 32-bit reversed Z about 0.04 % of the distance to the light, and twice the triangle's slope.
@@ -45,7 +44,8 @@ PcssTaps parseTaps(const std::string& text) {
     return taps;
 }
 
-// CONSTANT,SLOPE or CONSTANT,SLOPE,CLAMP.
+}  // namespace
+
 renderer::HardwareBias parseHardwareBias(const std::string& text) {
     float values[3] = {};
     const char *at = text.data(), *const end = at + text.size();
@@ -76,9 +76,12 @@ void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& hei
     if (cross == std::string::npos || width == 0 || height == 0)
         throw UsageError(fmt::format("'{}' is no size: give WIDTHxHEIGHT as in 1280x720, each from 1 to {} pixels.",
                                      text, kMostPixelsAcross));
+    const std::uint32_t tiles =
+        gpu::divideRoundingUp(width, gpu::kShadowTileSizePx) * gpu::divideRoundingUp(height, gpu::kShadowTileSizePx);
+    if (tiles > kMostTiles)
+        throw UsageError(
+            fmt::format("'{}' has {} tiles of 8x8 pixels, and a picture may have {}.", text, tiles, kMostTiles));
 }
-
-}  // namespace
 
 CLI::Validator numberWithin(double low, double high) {
     const std::string range = fmt::format("FLOAT in [{:g} - {:g}]", low, high);
@@ -131,19 +134,18 @@ bool allSoft(const std::vector<Filter>& filters) {
     return std::ranges::all_of(filters, [](Filter filter) { return filter == Filter::Pcss; });
 }
 
-namespace {
-
-// Presets parted by slashes.
 void parsePresets(const std::string& text, ShadowSettings& shadows) {
     shadows.pcssPresetCount = 0;
     for (std::size_t at = 0; at <= text.size();) {
         const std::size_t slash = std::min(text.find('/', at), text.size());
         if (shadows.pcssPresetCount == kMaxPcssPresets)
-            throw UsageError(fmt::format("--pcss-taps has more than {} presets.", kMaxPcssPresets));
+            throw UsageError(fmt::format("'{}' has more than {} sets of taps.", text, kMaxPcssPresets));
         shadows.pcssPresets[shadows.pcssPresetCount++] = parseTaps(text.substr(at, slash - at));
         at = slash + 1;
     }
 }
+
+namespace {
 
 renderer::FrameSettings frameSettingsOf(const Settings& s) {
     renderer::FrameSettings f;

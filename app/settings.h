@@ -7,12 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "gpu_interface/packing.h"
 #include "renderer/renderer.h"
 
 namespace gnomon::app {
 
 inline constexpr std::uint32_t kMostPixelsAcross = 16384;
+/// Tiles of a picture: the library counts list space in 32 bits, and any tile may have all lights of a view.
+inline constexpr std::uint32_t kMostTiles = 0xFFFFFFFFu / gpu::roundUpToEarlyWord(gpu::kMaxLightsPerView);
 inline constexpr std::uint32_t kMostLights = 100'000;
+inline constexpr std::uint32_t kFixedListEntriesPerTile = 32;  // with --reservation fixed
 
 struct Settings {
     std::string scene = "courtyard";
@@ -59,6 +63,12 @@ const std::vector<std::string>& biasNames();
 /// Sets how depths are biased, one of biasNames(), each with its own way to draw; throws UsageError otherwise.
 void setBias(const std::string& name, renderer::FrameSettings& settings);
 
+/// WIDTHxHEIGHT; throws UsageError where it is none, or where a view has no room for so many tiles.
+void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height);
+/// Presets of taps parted by slashes; throws UsageError otherwise.
+void parsePresets(const std::string& text, ShadowSettings& shadows);
+/// CONSTANT,SLOPE or CONSTANT,SLOPE,CLAMP; throws UsageError otherwise.
+renderer::HardwareBias parseHardwareBias(const std::string& text);
 /// Filters parted by commas; throws UsageError where one is none.
 std::vector<Filter> filtersOf(const std::string& text);
 /// Whether soft truth is to be judged: every light has PCSS.

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <type_traits>
 
+#include "app/errors.h"
 #include "app/progress.h"
 #include "gpu_interface/numbers.h"
 
@@ -22,8 +23,34 @@ constexpr const char* kPools = "Pools and lists";
 constexpr const char* kDevice = "Device";
 constexpr double kMostPoolEntries = 1u << 30;
 
-std::string notEmpty(const std::string& text) {
-    return text.empty() ? "give a value" : "";
+// A check by parsing: what `parse` throws about a text is the sentence against it.
+template <class Parse>
+std::function<std::string(const std::string&)> checkedBy(Parse parse) {
+    return [parse](const std::string& text) {
+        try {
+            parse(text);
+            return std::string();
+        } catch (const UsageError& error) {
+            return std::string(error.what());
+        }
+    };
+}
+
+void checkSize(const std::string& text) {
+    std::uint32_t width = 0, height = 0;
+    parseSize(text, width, height);
+}
+
+void checkPresets(const std::string& text) {
+    ShadowSettings unused;
+    parsePresets(text, unused);
+}
+
+constexpr double kLeastDensity = 0.1, kMostDensity = 64.0;
+
+std::string checkDensity(const std::string& text) {
+    const bool off = numberWithin(0.0, 0.0)(text).empty();
+    return off ? std::string() : numberWithin(kLeastDensity, kMostDensity)(text);
 }
 
 std::vector<Setting> makeTable() {
@@ -34,14 +61,16 @@ std::vector<Setting> makeTable() {
          .name = "size",
          .key = "size",
          .member = &S::size,
-         .help = "Of the picture",
-         .range = "WIDTHxHEIGHT, each from 1 to 16384 pixels"});
+         .help = "Size of the picture",
+         .check = checkedBy(checkSize),
+         .range = fmt::format("WIDTHxHEIGHT, each from 1 to {} pixels, with at most {} tiles of 8x8", kMostPixelsAcross,
+                              kMostTiles)});
     add({.group = kScene,
          .name = "camera",
          .key = "camera",
          .member = &S::camera,
          .help = "Where the picture is taken from",
-         .range = "a camera's name, #index, or eye:target[:degrees] as in 0,3,8:0,1,0:60"});
+         .range = "default, a camera's name, #index, or eye:target[:degrees] as in 0,3,8:0,1,0:60"});
     add({.group = kScene,
          .name = "time",
          .key = "time",
@@ -66,15 +95,15 @@ std::vector<Setting> makeTable() {
          .key = "lightDensity",
          .member = &S::lightDensity,
          .help = "Shadowed lights per tile, in the mean, that --lights shall give in this picture; they take the place "
-                 "of the scene's own point and spot lights",
-         .least = 0.1,
-         .most = 64.0,
-         .needs = "--lights"});
+                 "of the scene's own point and spot lights. 0, the default: off, --lights go by the scene's area alone",
+         .needs = "--lights",
+         .check = checkDensity,
+         .range = fmt::format("0 (off), or {} to {}", kLeastDensity, kMostDensity)});
     add({.group = kScene,
          .name = "seed",
          .key = "seed",
          .member = &S::seed,
-         .help = "Of scattered lights, and of what verify chooses by chance",
+         .help = "Seed of scattered lights, and of what verify chooses by chance",
          .most = 4294967295.0});
 
     add({.group = kFilter,
@@ -82,29 +111,27 @@ std::vector<Setting> makeTable() {
          .key = "filter",
          .member = &S::filter,
          .help = "Shadow filter. Several, parted by commas, take turns among the lights",
-         .check =
-             [](const std::string& text) {
-                 try {
-                     filtersOf(text);
-                     return std::string();
-                 } catch (const std::exception& error) {
-                     return std::string(error.what());
-                 }
-             },
+         .check = checkedBy(filtersOf),
          .range = "hard, pcf, pcss, or several of them as in hard,pcss"});
     add({.group = kFilter,
          .name = "pcf-radius",
          .key = "pcfRadius",
          .member = &S::pcfRadius,
-         .help = "Texels around a pixel's own",
+         .help = "Radius of the pcf filter in texels",
          .least = 1,
          .most = gpu::kMaxPcfRadius});
     add({.group = kFilter,
          .name = "pcss-taps",
          .key = "pcssTaps",
          .member = &S::taps,
-         .help = "Taps of the search and of the filter. Several, parted by slashes, take turns among the lights",
-         .range = "low, medium, high, or SEARCH,FILTER as in 16,24, each from 1 to 64"});
+         .help =
+             "Taps of the search and of the filter of pcss. Several, parted by slashes, take turns among the lights "
+             "with pcss",
+         .check = checkedBy(checkPresets),
+         .range =
+             fmt::format("low, medium, high, or SEARCH,FILTER as in 16,24, each from 1 to {}; or up to {} of these "
+                         "as in low/high/16,24",
+                         gpu::kMaxPcssTaps, gpu::kMaxPcssPresets)});
     add({.group = kFilter,
          .name = "pattern-per-frame",
          .key = "patternPerFrame",
@@ -125,29 +152,31 @@ std::vector<Setting> makeTable() {
          .name = "unquantised",
          .key = "unquantised",
          .member = &S::unquantised,
-         .help = "Inline shadows without the 8 bits of a visibility slot"});
+         .help = "Do not round inline shadows to the bits of a visibility slot"});
 
     add({.group = kBias,
          .name = "bias",
          .key = "bias",
          .member = &S::bias,
          .help =
-             "oriented; oriented-constant (one depth for all texels, maps drawn with slope factor 1); paper (that, "
-             "and faces that look away ask the map, too: its listing 7); hardware (maps drawn with factors 4096 and "
-             "2); hardware-no-normals (and faces that look away ask the map too); none",
+             "How the depth bias is made. oriented: each texel against the receiver's own plane; oriented-constant: "
+             "one depth for all texels, and maps drawn with slope factor 1; paper: as oriented-constant, but faces "
+             "that look away from the light are looked up in the map, not taken for dark (the paper's listing 7); "
+             "hardware: maps drawn with constant factor 4096 and slope factor 2; hardware-no-normals: as hardware, "
+             "but faces that look away are looked up, so that no normal is read; none: no bias at all",
          .choices = biasNames()});
     add({.group = kBias,
          .name = "hardware-bias",
          .key = "hardwareBias",
          .member = &S::hardwareBias,
-         .help = "To draw shadowmaps with, in place of what --bias has",
-         .check = notEmpty,
+         .help = "Factors to draw shadowmaps with, in place of those of --bias",
+         .check = checkedBy(parseHardwareBias),
          .range = "CONSTANT,SLOPE or CONSTANT,SLOPE,CLAMP, each at least 0"});
     add({.group = kBias,
          .name = "bias-metres",
          .key = "biasMetres",
          .member = &S::biasMetres,
-         .help = "Oriented bias of lights that state none",
+         .help = "Oriented bias in metres, of lights that state none",
          .most = 1000.0});
     add({.group = kBias,
          .name = "subsurface-fronts",
@@ -159,21 +188,21 @@ std::vector<Setting> makeTable() {
          .name = "subsurface-bias",
          .key = "subsurfaceBiasMetres",
          .member = &S::subsurfaceBiasMetres,
-         .help = "Metres, with --subsurface-fronts",
+         .help = "Bias of subsurface pixels in metres, where a light's own is smaller",
          .most = 1000.0,
          .needs = "--subsurface-fronts"});
     add({.group = kBias,
          .name = "face-normals",
          .key = "faceNormals",
          .member = &S::faceNormals,
-         .help = "From the G-buffer, or derived from its depth",
+         .help = "Face normals: stored in the G-buffer, or derived from its depth",
          .choices = {"stored", "derived"}});
 
     add({.group = kMaps,
          .name = "atlas",
          .key = "atlas",
          .member = &S::atlas,
-         .help = "Shadow atlas, pixels across; 0: by resolution",
+         .help = "Width and height of the shadow atlas in pixels; 0: by the size of the picture",
          .choices = {"0", "256", "512", "1024", "2048", "4096", "8192", "16384"}});
     add({.group = kMaps,
          .name = "depth",
@@ -186,7 +215,7 @@ std::vector<Setting> makeTable() {
          .name = "list-entries",
          .key = "listEntries",
          .member = &S::listEntries,
-         .help = "Capacity of the light lists; 0: 8 per tile",
+         .help = "Capacity of the light lists in entries; 0: 8 per tile",
          .most = kMostPoolEntries});
     add({.group = kPools,
          .name = "visibility-slots",
@@ -198,19 +227,22 @@ std::vector<Setting> makeTable() {
          .name = "most-list-entries",
          .key = "mostListEntries",
          .member = &S::mostListEntries,
-         .help = "To which the light lists may grow by themselves between frames; 0: they do not",
+         .help = "Entries to which the light lists may grow by themselves, between frames; 0: they do not grow",
          .most = kMostPoolEntries});
     add({.group = kPools,
          .name = "most-visibility-slots",
          .key = "mostVisibilitySlots",
          .member = &S::mostVisibilitySlots,
-         .help = "Likewise the visibility slots",
+         .help = "Slots to which the visibility slots may grow by themselves, between frames; 0: they do not grow",
          .most = kMostPoolEntries});
     add({.group = kPools,
          .name = "reservation",
          .key = "reservation",
          .member = &S::reservation,
-         .help = "How space in the light lists is given out",
+         .help = fmt::format(
+             "How space in the light lists is given out: approximate: as the froxel tests count; accurate: as "
+             "the lights are; fixed: {} entries to each tile, rounded up to {}",
+             kFixedListEntriesPerTile, gpu::roundUpToEarlyWord(kFixedListEntriesPerTile)),
          .choices = {"approximate", "accurate", "fixed"}});
 
     add({.group = kDevice,
@@ -223,7 +255,7 @@ std::vector<Setting> makeTable() {
          .name = "subgroup-size",
          .key = "subgroupSize",
          .member = &S::subgroupSize,
-         .help = "Lanes; 0: the device's own choice",
+         .help = "Lanes of a subgroup; 0: the device's own choice",
          .choices = {"0", "4", "8", "16", "32", "64"}});
     add({.group = kDevice,
          .name = "validate",
@@ -266,7 +298,7 @@ std::span<const Setting> settingsTable() {
 }
 
 std::string rangeOf(const Setting& setting) {
-    if (setting.range != nullptr) return setting.range;
+    if (!setting.range.empty()) return setting.range;
     if (!setting.choices.empty()) return fmt::format("{}", fmt::join(setting.choices, ", "));
     if (std::holds_alternative<bool Settings::*>(setting.member)) return "";
     return fmt::format("{} to {}", setting.least, setting.most);
@@ -322,9 +354,10 @@ std::string settingsPage() {
             page += fmt::format("\n## {}\n\n| option | what | value | default |\n|---|---|---|---|\n", group);
         }
         const nlohmann::ordered_json value = valueOf(setting, Settings{});
-        const std::string text = value.is_string()    ? value.get<std::string>()
-                                 : value.is_boolean() ? "off"
-                                                      : value.dump();
+        const std::string text = value.is_string()         ? value.get<std::string>()
+                                 : value.is_boolean()      ? "off"
+                                 : value.is_number_float() ? fmt::format("{}", value.get<double>())
+                                                           : value.dump();
         page += fmt::format("| `--{}` | {} | {} | {} |\n", setting.name, setting.help,
                             rangeOf(setting).empty() ? "(a flag)" : rangeOf(setting), text);
     }

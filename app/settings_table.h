@@ -23,13 +23,13 @@ struct Setting {
     const char* name;   ///< the option, without dashes
     const char* key;    ///< in JSON
     SettingMember member;
-    const char* help;
+    std::string help;
     std::vector<std::string> choices;  ///< a value must be one of them, if there are any
     double least = 0.0, most = 0.0;    ///< of numbers, where there are no choices
     const char* needs = nullptr;       ///< another option, with dashes
-    /// Of texts that are neither choice nor number: the sentence that says what is wrong, or nothing.
+    /// Where neither choices nor least and most say it: the sentence that says what is wrong, or nothing.
     std::function<std::string(const std::string&)> check;
-    const char* range = nullptr;  ///< in words, where the above do not say it
+    std::string range;  ///< in words, where the above do not say it
 };
 
 std::span<const Setting> settingsTable();

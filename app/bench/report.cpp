@@ -9,8 +9,8 @@
 namespace gnomon::app {
 namespace {
 
-// The shadow filter's samples per pixel and light: what its shader does (src/visibility). Where lights take turns with
-// filters, the mean of these.
+// The shadow filter's samples per pixel and light: what its shader does (src/visibility). Lights take turns with the
+// filters, and those with PCSS take turns with the presets, so each counts by its share.
 FilterSamples samplesOf(const renderer::FrameSettings& settings) {
     FilterSamples samples;
     const double share = 1.0 / static_cast<double>(settings.filters.size());
@@ -168,8 +168,7 @@ static Json passesOf(const Measurement& measured, const Variant& variant) {
     for (const Variant::Row& row : variant.passes()) {
         Json& pass = passes[row.name];
         pass = toJson(row.milliseconds);
-        pass["phase"] = phaseName(row.phase);
-        pass["drawing"] = row.kind == RowKind::Drawing;
+        pass.update(sortOf(row.phase, row.kind));
         if (const std::optional<Floor> floor = floorOf(measured, variant, row)) {
             pass["floor"] = {{"bytes", floor->need.bytes},
                              {"fetches", floor->need.fetches},

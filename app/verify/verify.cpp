@@ -63,8 +63,11 @@ int verify(const VerifyOptions& options) {
     rendererDescOf(options.settings);  // refuses wrong settings before anything is started
     if (options.settings.unquantised)
         throw UsageError("--unquantised has no meaning here: verify reads what is stored.");
+    // What is refused leaves no folder behind. A file within a folder that is still to be made has to wait for it.
+    const bool withinMaps = liesIn(options.json, options.maps);
+    if (!withinMaps) checkOutputs({&options.json, 1}, {&options.settings.scene, 1});
     prepareFolder(options.maps);
-    checkOutputs({&options.json, 1}, {&options.settings.scene, 1});
+    if (withinMaps) checkOutputs({&options.json, 1}, {&options.settings.scene, 1});
     const renderer::VulkanInstance instance(instanceDescOf(options.settings));
     verifyWithin(instance, options);
     return exitCodeOf(instance, options.settings);

@@ -19,6 +19,7 @@
 #include <charconv>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -234,19 +235,29 @@ void printStatistics(const gnomon::View& view, const gnomon::Timeline& timeline,
                     row.phase == gnomon::Phase::Host ? ", the host's" : "");
 }
 
+// Before any work: whether there will be a place for the picture. What is there stays.
+void checkWritable(const std::string& path) {
+    const bool isThere = std::filesystem::exists(path);
+    std::FILE* file = std::fopen(path.c_str(), "ab");
+    if (file == nullptr) throw std::runtime_error("The picture '" + path + "' cannot be written.");
+    std::fclose(file);
+    if (!isThere) std::filesystem::remove(path);
+}
+
 void savePicture(const std::uint8_t* rgba, const std::string& path) {
     std::FILE* file = std::fopen(path.c_str(), "wb");
-    if (file == nullptr) throw std::runtime_error("The picture could not be opened for writing.");
+    if (file == nullptr) throw std::runtime_error("The picture '" + path + "' cannot be written.");
     std::fprintf(file, "P6\n%u %u\n255\n", kWidthPx, kHeightPx);
     std::size_t written = 0;
     for (std::size_t i = 0; i < std::size_t{kWidthPx} * kHeightPx; ++i)
         written += std::fwrite(rgba + 4 * i, 3, 1, file);
     const bool closed = std::fclose(file) == 0;
     if (!closed || written != std::size_t{kWidthPx} * kHeightPx)
-        throw std::runtime_error("The picture could not be written.");
+        throw std::runtime_error("The picture '" + path + "' could not be written whole.");
 }
 
 void run(const Arguments& arguments) {
+    checkWritable(arguments.picture);
     Host host(arguments);
     const std::uint32_t pipelines = host.context->pipelineCount();
     for (std::uint64_t number = 0; number < kFrames; ++number) host.renderFrame(number);
@@ -261,6 +272,14 @@ void run(const Arguments& arguments) {
 }  // namespace host
 
 int main(int argc, char** argv) try {
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view text = argv[i];
+        if (!text.starts_with('-')) continue;
+        std::puts(
+            "minimal_host [picture.ppm] [index of the Vulkan device] [entries in each pool] "
+            "[entries to which they may grow]");
+        return text == "--help" || text == "-h" ? 0 : 1;
+    }
     const auto number = [&](int i) {
         const std::string_view text = argc > i ? argv[i] : "0";
         std::uint32_t value = 0;

@@ -57,9 +57,16 @@ void Device::choosePhysical(std::uint32_t index) {
     check(vkEnumeratePhysicalDevices(instance, &count, nullptr), "vkEnumeratePhysicalDevices");
     std::vector<VkPhysicalDevice> devices(count);
     check(vkEnumeratePhysicalDevices(instance, &count, devices.data()), "vkEnumeratePhysicalDevices");
-    if (index >= count) throw std::runtime_error("There is no such Vulkan device.");
-    physical = devices[index];
     VkPhysicalDeviceProperties properties;
+    if (index >= count) {
+        std::string sentence = "There is no such Vulkan device";
+        for (std::uint32_t i = 0; i < count; ++i) {
+            vkGetPhysicalDeviceProperties(devices[i], &properties);
+            sentence += (i == 0 ? ": give " : ", ") + std::to_string(i) + " (" + properties.deviceName + ")";
+        }
+        throw std::runtime_error(sentence + (count == 0 ? ": there is none at all." : "."));
+    }
+    physical = devices[index];
     vkGetPhysicalDeviceProperties(physical, &properties);
     std::printf("device: %s\n", properties.deviceName);
     if (properties.apiVersion < VK_API_VERSION_1_3) throw std::runtime_error("The device lacks Vulkan 1.3.");
@@ -197,47 +204,47 @@ VkPipeline Device::makeComputePipeline(std::span<const std::uint32_t> spirv, VkP
     return pipeline;
 }
 
-FrameRing::FrameRing(Device& device, std::uint32_t framesInFlight) : device_(device), slots_(framesInFlight) {
+FrameRing::FrameRing(Device& device, std::uint32_t framesInFlight) : device_(device), frames_(framesInFlight) {
     VkCommandPoolCreateInfo poolInfo = {VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
     poolInfo.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
     poolInfo.queueFamilyIndex = device.queueFamily;
     VkCommandPool pool = VK_NULL_HANDLE;
     check(vkCreateCommandPool(device.handle, &poolInfo, nullptr, &pool), "vkCreateCommandPool");
     device.own([&device, pool] { vkDestroyCommandPool(device.handle, pool, nullptr); });
-    for (Slot& slot : slots_) {
+    for (Frame& frame : frames_) {
         VkCommandBufferAllocateInfo info = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
         info.commandPool = pool;
         info.commandBufferCount = 1;
-        check(vkAllocateCommandBuffers(device.handle, &info, &slot.commands), "vkAllocateCommandBuffers");
+        check(vkAllocateCommandBuffers(device.handle, &info, &frame.commands), "vkAllocateCommandBuffers");
         VkFenceCreateInfo fence = {VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
         fence.flags = VK_FENCE_CREATE_SIGNALED_BIT;  // nothing to wait for in the first frames
-        check(vkCreateFence(device.handle, &fence, nullptr, &slot.finished), "vkCreateFence");
-        device.own([&device, made = slot.finished] { vkDestroyFence(device.handle, made, nullptr); });
+        check(vkCreateFence(device.handle, &fence, nullptr, &frame.finished), "vkCreateFence");
+        device.own([&device, made = frame.finished] { vkDestroyFence(device.handle, made, nullptr); });
     }
 }
 
 VkCommandBuffer FrameRing::begin(std::uint64_t number) {
-    const Slot& slot = slots_[number % slots_.size()];
-    check(vkWaitForFences(device_.handle, 1, &slot.finished, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+    const Frame& frame = frames_[number % frames_.size()];
+    check(vkWaitForFences(device_.handle, 1, &frame.finished, VK_TRUE, UINT64_MAX), "vkWaitForFences");
     VkCommandBufferBeginInfo info = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-    check(vkBeginCommandBuffer(slot.commands, &info), "vkBeginCommandBuffer");
-    return slot.commands;
+    check(vkBeginCommandBuffer(frame.commands, &info), "vkBeginCommandBuffer");
+    return frame.commands;
 }
 
 void FrameRing::submit(std::uint64_t number) {
-    const Slot& slot = slots_[number % slots_.size()];
-    check(vkEndCommandBuffer(slot.commands), "vkEndCommandBuffer");
-    check(vkResetFences(device_.handle, 1, &slot.finished), "vkResetFences");
+    const Frame& frame = frames_[number % frames_.size()];
+    check(vkEndCommandBuffer(frame.commands), "vkEndCommandBuffer");
+    check(vkResetFences(device_.handle, 1, &frame.finished), "vkResetFences");
     VkSubmitInfo info = {VK_STRUCTURE_TYPE_SUBMIT_INFO};
     info.commandBufferCount = 1;
-    info.pCommandBuffers = &slot.commands;
-    check(vkQueueSubmit(device_.queue, 1, &info, slot.finished), "vkQueueSubmit");
+    info.pCommandBuffers = &frame.commands;
+    check(vkQueueSubmit(device_.queue, 1, &info, frame.finished), "vkQueueSubmit");
 }
 
 void FrameRing::waitForAll() const {
-    for (const Slot& slot : slots_)
-        check(vkWaitForFences(device_.handle, 1, &slot.finished, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+    for (const Frame& frame : frames_)
+        check(vkWaitForFences(device_.handle, 1, &frame.finished, VK_TRUE, UINT64_MAX), "vkWaitForFences");
 }
 
 }  // namespace host

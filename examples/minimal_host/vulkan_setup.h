@@ -83,12 +83,12 @@ public:
     void waitForAll() const;
 
 private:
-    struct Slot {
+    struct Frame {
         VkCommandBuffer commands = VK_NULL_HANDLE;
         VkFence finished = VK_NULL_HANDLE;
     };
     Device& device_;
-    std::vector<Slot> slots_;
+    std::vector<Frame> frames_;
 };
 
 }  // namespace host

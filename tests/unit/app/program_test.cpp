@@ -120,6 +120,12 @@ TEST_F(Program, WrongUsageIsRefused) {
                                   "render --time 1e99",
                                   "render --fps 0",
                                   "render --fps nan",
+                                  "--frob",
+                                  "--frob render",
+                                  "render --light-density 0",
+                                  "render --lights 1 --light-density 0.05",
+                                  "render --lights 1 --light-density 65",
+                                  "render --lights 1 --light-density nan",
                                   "render --sequence",
                                   "render boxes --animation walk",
                                   "bench --fps -1",
@@ -134,6 +140,24 @@ TEST_F(Program, WrongUsageIsRefused) {
                                   "compare one.png two.png --tolerance 256",
                                   "devices extra"})
         expectRefused(arguments, 2);
+}
+
+TEST_F(Program, RefusalsSayWhere) {
+    const std::pair<const char*, const char*> cases[] = {{"", "--help"},
+                                                         {"--frob", "'--frob'"},
+                                                         {"nosuch", "no command 'nosuch'"},
+                                                         {"render --size 64", "--size: "},
+                                                         {"render --size 16384x16384", "4186127"},
+                                                         {"render --filter soft", "--filter: "},
+                                                         {"render --pcss-taps 16", "--pcss-taps: "},
+                                                         {"render --pcss-taps low/low/low/low/low", "--pcss-taps: "},
+                                                         {"render --hardware-bias 1", "--hardware-bias: "},
+                                                         {"render --lights 1 --light-density 65", "--light-density: "}};
+    for (const auto& [arguments, words] : cases) {
+        const std::string said = run(arguments).err;
+        EXPECT_NE(said.find(words), std::string::npos) << arguments << "\n" << said;
+        EXPECT_EQ(said.find("subcommand"), std::string::npos) << said;
+    }
 }
 
 TEST_F(Program, WrongBiasesAreRefused) {
@@ -159,7 +183,7 @@ TEST_F(Program, WrongBiasesAreRefused) {
 
 TEST_F(Program, SizesOfNothingAndAbsurdSizesAreRefused) {
     for (const char* size : {"0x0", "0x64", "64x0", "16385x64", "64x16385", "4294967297x64", "-64x64", "64", "64x",
-                             "x64", "64x64x64", "axb", "1e3x64", "' 64x64'", "''"})
+                             "x64", "64x64x64", "axb", "1e3x64", "' 64x64'", "''", "16384x16384", "16384x16353"})
         expectRefused(std::string("render --size ") + size, 2);
 }
 
@@ -196,6 +220,8 @@ TEST_F(Program, OutputsThatCannotBeWrittenAreFoundFirst) {
         expectRefused(std::string("render ") + option + " .", 2);
     }
     expectRefused("bench --json missing/out.json", 2);
+    expectRefused("verify boxes --maps new --json missing/out.json", 2);
+    EXPECT_FALSE(fs::exists(folder_ / "new"));
 }
 
 TEST_F(Program, OutputsAreFilesOfTheirOwn) {
@@ -301,6 +327,18 @@ TEST_F(Program, RendersAndDescribesAFrame) {
     EXPECT_GT(json["counters"]["meanShadowedLightsPerTile"], 0.0);
     EXPECT_EQ(json["settings"]["filter"], "pcss");
     EXPECT_EQ(json["extent"], (nlohmann::json{160, 90}));
+    EXPECT_GE(json["memory"]["library"]["lights"]["copies"], 2) << "one for each frame in flight";
+    EXPECT_EQ(json["memory"]["library"]["visibility"]["copies"], 1);
+    EXPECT_GT(json["memory"]["library"]["visibility"]["bytes"], 0);
+    for (const nlohmann::json& pass : json["passes"]) {
+        if (pass["name"] == "gbuffer") {
+            EXPECT_EQ(pass["kind"], "drawing");
+        }
+        if (pass["name"] == "generate_shadows") {
+            EXPECT_EQ(pass["kind"], "compute");
+        }
+        EXPECT_FALSE(pass.contains("drawing"));
+    }
 }
 
 // A triangle that slides three metres to the right within a second; `reach` in place of the three.
@@ -404,6 +442,7 @@ TEST_F(Program, BenchMeasuresVariantsInTurn) {
     EXPECT_GT(json["ratios"]["deferred/inline"]["ofMedians"], 0.0);
     EXPECT_NE(json["commit"], "");
     EXPECT_FALSE(json.contains("rates"));
+    EXPECT_EQ(json["variants"]["inline"]["passes"]["gbuffer"]["kind"], "drawing");
 }
 
 // Explicit options stand above the preset's; what it prints and writes is the same measurement.

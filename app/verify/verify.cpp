@@ -85,16 +85,19 @@ void addVerifyCommand(CLI::App& app, Work& chosen) {
     command->add_option("--rays", options->rays, "Soft truth: rays to the source, rounded up to a square number")
         ->check(CLI::Range(256u, 65536u))
         ->capture_default_str();
-    command->add_option("--subset", options->subset, "Soft truth is traced for one tile of pixels in so many")
+    command->add_option("--subset", options->subset, "Soft truth is traced for one tile out of so many")
         ->check(CLI::IsMember({1, 4, 16}))
         ->capture_default_str();
     command
-        ->add_option("--flicker", options->flickerFrames,
-                     "Also so many frames of a camera that moves sideways, 1 cm each: how much shadows change")
+        ->add_option(
+            "--flicker", options->flickerFrames,
+            "Also measure how much shadows change over so many frames, while the camera moves sideways by 1 cm each")
         ->check(CLI::Range(2u, 10'000u));
     command
-        ->add_option("--edge-set", options->edgeSet,
-                     "Around a pixel: as far as pixels and shadow texels fall on its face, or a circle on it")
+        ->add_option(
+            "--edge-set", options->edgeSet,
+            "Where edges are looked for around a pixel: as far as pixels and shadow texels reach on its face, or in "
+            "a circle on it")
         ->check(CLI::IsMember({"footprint", "circle"}))
         ->capture_default_str();
     CLI::Option* sweep = command->add_flag("--sweep", options->sweep,

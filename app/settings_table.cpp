@@ -49,8 +49,9 @@ void checkPresets(const std::string& text) {
 constexpr double kLeastDensity = 0.1, kMostDensity = 64.0;
 
 std::string checkDensity(const std::string& text) {
-    const bool off = numberWithin(0.0, 0.0)(text).empty();
-    return off ? std::string() : numberWithin(kLeastDensity, kMostDensity)(text);
+    const bool good = numberWithin(0.0, 0.0)(text).empty() || numberWithin(kLeastDensity, kMostDensity)(text).empty();
+    return good ? std::string()
+                : fmt::format("'{}' is neither 0 nor a number from {} to {}", text, kLeastDensity, kMostDensity);
 }
 
 std::vector<Setting> makeTable() {

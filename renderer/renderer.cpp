@@ -187,9 +187,9 @@ void Renderer::State::growTo(std::uint32_t widthPx, std::uint32_t heightPx) {
     if (widthPx <= now.width && heightPx <= now.height) return;
     device.waitIdle();
     const std::uint32_t width = std::max(widthPx, now.width), height = std::max(heightPx, now.height);
+    shadowmaps.growTo(width, height);  // first: what fails here can be tried again
     gbuffer.resize(width, height);
     lighting.resize(gbuffer);
-    shadowmaps.growTo(width, height);
     lightVisibility.reset();
     ++resizes;
 }
@@ -278,7 +278,7 @@ std::uint64_t Renderer::renderFrame(const SceneCamera& cameraAtRest, ShadowMode 
     maps.atlas.prepare(s.scene, s.shadowLights, plan);
     s.beginView(maps, prepared, plan, shadows);
     const FrameParts parts = {s.device, s.scene, s.gbuffer, maps.atlas, *maps.view, s.lighting, *s.timeline};
-    const FrameView view = {
+    const FrameInput view = {
         gbufferCameraOf(camera), {s.settings.widthPx, s.settings.heightPx}, mode, shadows, s.settings.inlineVariant};
     const ShadowAtlasStatistics drawn = recordFrame(c, parts, view);
     commands.submit();

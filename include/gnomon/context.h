@@ -22,9 +22,10 @@ struct ContextDesc {
     VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
     VkDevice device = VK_NULL_HANDLE;
     PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;
-    VkPipelineCache pipelineCache = VK_NULL_HANDLE;  ///< optional; used as long as the context lives
+    /// Optional; used as long as the context lives, by several threads at once (so not externally synchronized).
+    VkPipelineCache pipelineCache = VK_NULL_HANDLE;
     /// Families of all queues that the recorded commands will be submitted to: one, or several where phases run on an
-    /// async compute queue (buffers are then shared concurrently, and no ownership transfer is needed).
+    /// async compute queue (buffers are then shared concurrently, and no ownership transfer is needed). Up to 8.
     std::span<const std::uint32_t> queueFamilies;
     bool debugLabels = false;
     /// 0: the device's own choice. Else 4, 8, 16, 32 or 64, which the device must support.

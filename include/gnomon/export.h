@@ -1,6 +1,6 @@
 #pragma once
-// GNOMON_API marks what a shared library shows to its host; everything else in it is hidden, and GNOMON_HIDDEN says so of
-// what stands inside a shown class. In a static library neither matters. The CMake target defines GNOMON_SHARED for
+// GNOMON_API marks what a shared library shows to its host; everything else in it is hidden, and GNOMON_HIDDEN says so
+// of what stands inside a shown class. In a static library neither matters. The CMake target defines GNOMON_SHARED for
 // hosts, and GNOMON_BUILDING while the library itself is compiled.
 
 #if defined(_WIN32)

@@ -18,10 +18,10 @@ namespace gnomon {
 
 struct PrepareDesc {
     std::uint32_t maxWidthPx = 3840, maxHeightPx = 2160;
-    /// Illuminance in lux at which a light without a range ends.
+    /// Illuminance in lux, above 0, at which a light without a range ends.
     float rangeCutoffLux = 0.02f;
-    /// Where more than 1024 lights compete, one that was kept last frame counts this much more, so that the choice does
-    /// not flicker.
+    /// Where more than 1024 lights compete, one that was kept last frame counts this much more (at least 1), so that
+    /// the choice does not flicker.
     float keepFactor = 1.2f;
 };
 
@@ -66,8 +66,8 @@ struct LightOnScreen {
     float nearestMetres = 0.0f, farthestMetres = 0.0f;
 };
 
-/// What run() answers: the visible lights in the order of the lists, directional ones first in the host's order, then by
-/// nearest view depth. Valid until the next run().
+/// What run() answers: the visible lights in the order of the lists, directional ones first in the host's order, then
+/// by nearest view depth. Valid until the next run().
 struct PreparedLights {
     std::span<const LightOnScreen> visible;
     PrepareReport report;

@@ -40,17 +40,18 @@ struct Light {
     std::uint8_t mask = 0xFF;
     /// Metres, relative to the frame's origin, at most 1e9. Ignored for directional lights.
     float position[3] = {0, 0, 0};
-    /// From the light into the scene; normalised by the library. Ignored for point lights.
+    /// From the light into the scene; normalised by the library, not zero. Ignored for point lights.
     float direction[3] = {0, 0, -1};
-    /// Metres; the light has no influence beyond. 0: derived from `intensity` as the distance at which an unshadowed
-    /// surface facing the light receives PrepareDesc::rangeCutoffLux. Ignored for directional lights.
+    /// Metres, at least 0; the light has no influence beyond. 0: derived from `intensity` as the distance at which an
+    /// unshadowed surface facing the light receives PrepareDesc::rangeCutoffLux. Ignored for directional lights.
     float rangeMetres = 0.0f;
     /// Candela (lux for directional lights), at least 0. 0: the light is off. Else it serves two things only: a missing
     /// range, and the choice among too many lights. What the host's shader makes of the light is its own business.
     float intensity = 1.0f;
     /// Spot: half-angle of the cone in radians, above 0 and below pi/2 (checked: at most 1.55).
     float outerConeAngle = 0.785398163f;
-    /// Radius of the source in metres; directional lights: angular radius in radians, at most 0.5. Drives the penumbra.
+    /// Radius of the source in metres, at least 0; directional lights: angular radius in radians, at most 0.5. Drives
+    /// the penumbra.
     float sourceRadius = 0.0f;
     /// The light fades from full at fadeStart to nothing at fadeEnd metres between camera and light. Ignored for
     /// directional lights. The end may not be before the start.
@@ -59,9 +60,9 @@ struct Light {
     /// Likewise its shadow; beyond the end the light casts none. Directional lights: metres between camera and pixel.
     float shadowFadeStartMetres = std::numeric_limits<float>::infinity();
     float shadowFadeEndMetres = std::numeric_limits<float>::infinity();
-    /// Depth bias in metres. Source: the paper, section 4.2, uses 2 mm.
+    /// Depth bias in metres, at least 0. Source: the paper, section 4.2, uses 2 mm.
     float biasMetres = 0.002f;
-    /// Multiplies the light's importance where more than 1024 lights compete.
+    /// Multiplies the light's importance, where more than 1024 lights compete. At least 0.
     float priority = 1.0f;
     /// Whether it casts a shadow, where it is given shadow views: FrameDesc::lightViews.
     bool casts = true;
@@ -83,7 +84,8 @@ struct LightShadowViews {
 /// of 90 degrees or a little more: where the rectangle reaches a few texels beyond 90 degrees, filters are seamless
 /// across faces.
 struct ShadowView {
-    /// Perspective: clip w is the distance along the view's axis in metres.
+    /// Perspective: clip w is the distance along the shadow view's axis in metres. Orthographic: it is 1. Near and far
+    /// below must be those of this matrix: that is not checked, and shadows are wrong where they are not.
     float clipFromWorld[16] = {};
     std::uint32_t atlas = 0;  ///< 0 to 3
     std::uint32_t layer = 0;

@@ -85,7 +85,8 @@ struct ShadowSettings {
     /// Bits of a pixel's visibility in a slot: 8, or 4 for half the memory and an error of up to 0.066.
     std::uint32_t visibilityBits = 8;
     ListReservation listReservation = ListReservation::Accurate;
-    std::uint32_t fixedListEntriesPerTile = 0;  ///< for ListReservation::Fixed, 1 to 1024
+    std::uint32_t fixedListEntriesPerTile =
+        0;  ///< for ListReservation::Fixed, 1 to 1024; rounded up to a multiple of 3
     /// The host gives FrameDesc::depthPyramid, a two-channel pyramid level, instead of having one built.
     bool hostDepthPyramid = false;
 

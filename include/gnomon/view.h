@@ -1,8 +1,9 @@
 #pragma once
 // View: tiled deferred shadows of one camera, phases 1 to 4, recorded into the host's own command buffers.
 //
-// The host owns instance, device, queues, command buffers, images and submission. The library never submits or
-// waits, and allocates per frame only where ViewDesc allows pools to grow.
+// The host owns instance, device, queues, command buffers, images and submission. The library never submits or waits.
+// A frame allocates in two cases only: where ViewDesc allows pools to grow, and where its settings need pipelines that
+// Context::prepare() has not made.
 //
 // One frame of one view:
 //
@@ -47,14 +48,15 @@ struct ViewDesc {
     std::uint32_t visibilityBits = 8;
     /// Above 0: a pool may grow up to this. If a frame that has finished would have needed more, beginFrame() makes the
     /// pool as large as FrameStatistics recommends. It then allocates, and frees the old buffer when its frames have
-    /// finished. Without memory for that the pools stay as they are until the next resize().
+    /// finished. Tiles without list space ask for no slots: so slots may grow one round after the lists. Without memory
+    /// the pools stay as they are until the next resize(). Slots count in `visibilityBits`.
     std::uint32_t mostListEntries = 0;
     std::uint32_t mostVisibilitySlots = 0;
     std::uint32_t maxShadowViews = 4096;
     /// Texels of all shadow atlases and layers for which recordShadowBounds() keeps bounds (11 bytes per 256), their
     /// sides rounded up to multiples of 256; frames with larger atlases do without. 0: never.
     std::uint64_t shadowBoundsTexels = std::uint64_t{8192} * 8192;
-    bool statistics = true;  ///< the means over tiles (one small extra pass)
+    bool statistics = true;  ///< sums over all tiles, in one small extra pass: see FrameStatistics
     /// Testing: bytes that are left free before and after the contents of every device buffer, and are never written.
     /// A multiple of 256; buffer() then returns buffers whose contents begin at this offset.
     std::uint32_t guardBytes = 0;
@@ -94,10 +96,11 @@ struct ShadowAtlas {
 };
 
 /// One frame. Images are read by compute shaders (stage COMPUTE_SHADER, access SHADER_SAMPLED_READ); the host makes
-/// their contents visible to that before the phase that reads them: depth, face normals and receiver flags before the
-/// hierarchical depth, atlases before recordShadowBounds(), or before phase 4 without it.
+/// their contents visible to that before the phase that reads them: depth, depth pyramid, face normals and receiver
+/// flags before the hierarchical depth, atlases before recordShadowBounds(), or before phase 4 without it.
 struct FrameDesc {
-    /// Grows by one per frame. The frame with frameNumber - framesInFlight must have finished on the device.
+    /// Grows from frame to frame, by one or more; a frame that was not submitted may begin again under its number. All
+    /// frames up to frameNumber - framesInFlight must have finished on the device.
     std::uint64_t frameNumber = 0;
     ShadowSettings settings;
     /// Per visible light, in the order of View::prepare()'s answer: its shadow views. Empty: no light casts.
@@ -113,7 +116,7 @@ struct FrameDesc {
     /// With ShadowSettings::hostDepthPyramid: R32G32_SFLOAT, min and max device depth per tile; texel (0, 0) is the
     /// first tile of the active viewport.
     HostImage depthPyramid;
-    std::span<const ShadowAtlas> atlases;  ///< up to 4
+    std::span<const ShadowAtlas> atlases;  ///< up to ContextDesc::maxShadowAtlases
     /// Optional: rows of the passes are written to it; the host has called its beginFrame() for this frame.
     Timeline* timeline = nullptr;
 };
@@ -132,19 +135,24 @@ struct FrameStatistics {
     /// In slots of the frame's own ShadowSettings::visibilityBits, as all counts of slots here; where lists overflow,
     /// without ViewDesc::statistics, a lower bound.
     std::uint32_t recommendedVisibilitySlots = 0;
-    // Only with ViewDesc::statistics:
-    std::uint32_t tilesWithGeometry = 0;
-    std::uint32_t approximateEntries = 0, earlyEntries = 0, earlyCastingEntries = 0;
-    std::uint32_t finalEntries = 0, finalSlotEntries = 0, maxLightsInTile = 0;
     double prepareMilliseconds = 0.0;                  ///< CPU time of phase 1: prepare(), and its part of beginFrame()
     std::uint32_t listCapacity = 0, slotCapacity = 0;  ///< what the frame had
+    // Only with ViewDesc::statistics, else 0. Sums over all shadow tiles; an entry is one light of one tile.
+    std::uint32_t tilesWithGeometry = 0;
+    std::uint32_t approximateEntries = 0;   ///< after phase 2
+    std::uint32_t earlyEntries = 0;         ///< after phase 3
+    std::uint32_t earlyCastingEntries = 0;  ///< of these: of lights that cast
+    std::uint32_t finalEntries = 0;         ///< after phase 4, which drops lights that reach no lit pixel
+    std::uint32_t finalSlotEntries = 0;     ///< of these: with a visibility slot
+    std::uint32_t maxLightsInTile = 0;      ///< after phase 3
 };
 
 /// The buffers of one camera. Not thread safe; different views are independent, and record calls of one frame may go to
 /// different command buffers as long as they are made, and executed, in the order given above.
 class GNOMON_API View {
 public:
-    /// What create() will allocate. Thread safe.
+    /// The buffers that create() will allocate, without guards, alignment, two images of one texel, and memory of the
+    /// CPU. Thread safe.
     static Result memory(const Context& context, const ViewDesc& desc, MemoryReport& out) noexcept;
     /// The context must outlive the view.
     static Result create(const Context& context, const ViewDesc& desc, std::unique_ptr<View>& out) noexcept;
@@ -157,21 +165,23 @@ public:
     /// Gives the view another extent, other pools or other limits. Only the buffers whose size changes are made anew;
     /// shadow bounds are kept unless their own size changes. Between frames: not after prepare() or beginFrame() of a
     /// frame that is still to be recorded. Frames in flight may go on, since what they use is freed when they have
-    /// finished. framesInFlight, guardBytes and statistics cannot change.
+    /// finished. A pool that has grown by itself keeps its size, unless `desc` asks for another one than before.
+    /// framesInFlight, guardBytes and statistics cannot change. On failure the view is as it was, but prepare() must
+    /// run again.
     Result resize(const ViewDesc& desc) noexcept;
 
     /// Phase 1: which lights are visible, in which order, and how large on screen. Fails with a sentence on bad input.
-    /// The answer holds until the next call.
+    /// The answer holds until the next prepare() or resize().
     Result prepare(const ViewInput& input, PreparedLights& out) noexcept;
     /// Takes the answer of the last prepare(), which counts for one frame, and the shadow views that the host planned
     /// from it. Makes pipelines where these settings are new (see Context::prepare()). Fails with a sentence on bad
-    /// input; the frame must then not be recorded.
+    /// input; the frame must then not be recorded. `report`, if given: what phase 1 kept and dropped.
     Result beginFrame(const FrameDesc& frame, PrepareReport* report = nullptr) noexcept;
 
-    // Each records one pass with its barriers, debug label and timeline row, and leaves its own compute pipeline and
-    // descriptor sets bound. On one queue the library's buffers need no barrier by the host, before or after. Across
-    // queues a semaphore is enough. The lists exist once per view: the next frame's recordHierarchicalDepth() must wait
-    // for this frame's recordEndFrame().
+    // After a beginFrame() that succeeded. Each records one pass with its barriers, debug label and timeline row, and
+    // leaves its own compute pipeline and descriptor sets bound. On one queue the library's buffers need no barrier by
+    // the host, before or after. Across queues a semaphore is enough. The lists exist once per view: the next frame's
+    // recordHierarchicalDepth() must wait for this frame's recordEndFrame().
     void recordHierarchicalDepth(VkCommandBuffer commands) noexcept;
     void recordFindLightsApproximate(VkCommandBuffer commands) noexcept;
     /// Afterwards the early lists are visible to all shaders. A host that evaluates every shadow while lighting may
@@ -199,7 +209,7 @@ public:
     [[nodiscard]] VkDeviceSize evaluateCommandOffset() const noexcept;
 
     /// Statistics of a frame that the host knows to have finished: one of the last framesInFlight frames begun. Never
-    /// waits. False if the frame is not among them or had no recordEndFrame().
+    /// waits. False if the frame is not among them, had no recordEndFrame(), or was never submitted.
     bool statistics(std::uint64_t frameNumber, FrameStatistics& out) const noexcept;
 
     /// Where a buffer's contents can be copied from, by its name in the memory report (for tools and tests); or null.

@@ -5,7 +5,7 @@
 
 namespace gnomon::renderer {
 
-ShadowAtlasStatistics recordFrame(VkCommandBuffer commands, const FrameParts& parts, const FrameView& frame) {
+ShadowAtlasStatistics recordFrame(VkCommandBuffer commands, const FrameParts& parts, const FrameInput& frame) {
     View& view = parts.view;
     {
         const TimelineScope scope(parts.device, &parts.timeline, commands, "gbuffer", Phase::Host, RowKind::Drawing);

@@ -21,7 +21,7 @@ struct FrameParts {
 };
 
 /// What is drawn.
-struct FrameView {
+struct FrameInput {
     GBufferCamera camera;
     VkExtent2D extent{};
     ShadowMode mode = ShadowMode::Deferred;
@@ -30,6 +30,6 @@ struct FrameView {
 };
 
 /// After View::beginFrame() and ShadowAtlasImage::prepare().
-ShadowAtlasStatistics recordFrame(VkCommandBuffer commands, const FrameParts& parts, const FrameView& frame);
+ShadowAtlasStatistics recordFrame(VkCommandBuffer commands, const FrameParts& parts, const FrameInput& frame);
 
 }  // namespace gnomon::renderer

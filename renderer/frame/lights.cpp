@@ -42,6 +42,7 @@ std::vector<Light> libraryLights(std::span<const SceneLight> lights, const glm::
                                  const FrameSettings& settings) {
     std::vector<Light> out;
     out.reserve(lights.size());
+    std::uint32_t soft = 0;  // lights of Filter::Pcss so far: presets take turns among them alone
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const SceneLight& light = lights[i];
         Light l;
@@ -56,7 +57,8 @@ std::vector<Light> libraryLights(std::span<const SceneLight> lights, const glm::
         l.biasMetres = light.biasMetres >= 0.0f ? light.biasMetres : settings.biasMetres;
         l.casts = light.casts;
         l.filter = filterOf(light, i, settings);
-        l.pcssPreset = static_cast<std::uint8_t>(i % settings.shadows.pcssPresetCount);
+        if (l.filter == Filter::Pcss)
+            l.pcssPreset = static_cast<std::uint8_t>(soft++ % settings.shadows.pcssPresetCount);
         out.push_back(l);
     }
     return out;

@@ -7,10 +7,6 @@
 
 namespace gnomon::renderer {
 
-void require(const Result& result) {
-    if (!result) throw GpuError(result.message());
-}
-
 Shadowmaps::Shadowmaps(const Device& device, const Context& context, const GpuScene& scene, const RendererDesc& desc,
                        std::uint32_t atlasSizePx, std::uint32_t framesInFlight)
     : device_(device),
@@ -56,9 +52,11 @@ Shadowmaps::Pair& Shadowmaps::pairFor(const ShadowDrawing& drawing) {
 
 void Shadowmaps::growTo(std::uint32_t widthPx, std::uint32_t heightPx) {
     if (widthPx <= viewDesc_.maxWidthPx && heightPx <= viewDesc_.maxHeightPx) return;
-    viewDesc_.maxWidthPx = std::max(viewDesc_.maxWidthPx, widthPx);
-    viewDesc_.maxHeightPx = std::max(viewDesc_.maxHeightPx, heightPx);
-    for (const auto& pair : pairs_) require(pair->view->resize(viewDesc_));
+    ViewDesc larger = viewDesc_;
+    larger.maxWidthPx = std::max(larger.maxWidthPx, widthPx);
+    larger.maxHeightPx = std::max(larger.maxHeightPx, heightPx);
+    for (const auto& pair : pairs_) require(pair->view->resize(larger));
+    viewDesc_ = larger;
 }
 
 }  // namespace gnomon::renderer

@@ -4,7 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "renderer/renderer.h"
+#include "gnomon/view.h"
+#include "renderer/frame/renderer_desc.h"
 #include "renderer/shadow_atlas/shadow_atlas.h"
 
 namespace gnomon::renderer {
@@ -44,8 +45,5 @@ private:
     Pair* current_ = nullptr;
     std::uint64_t uses_ = 0;
 };
-
-/// Throws GpuError with the sentence of a call of the library that failed.
-void require(const Result& result);
 
 }  // namespace gnomon::renderer

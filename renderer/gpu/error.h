@@ -6,6 +6,8 @@
 
 #include <volk.h>
 
+#include "gnomon/result.h"
+
 namespace gnomon::renderer {
 
 /// A failing Vulkan call, a missing device or a scene that does not fit the device.
@@ -16,5 +18,10 @@ public:
 
 /// Throws GpuError with a sentence that names `what` (for example "creating an image") unless the result is a success.
 void check(VkResult result, const char* what);
+
+/// Throws GpuError with the library's sentence unless the result is a success.
+inline void require(const Result& result) {
+    if (!result) throw GpuError(result.message());
+}
 
 }  // namespace gnomon::renderer

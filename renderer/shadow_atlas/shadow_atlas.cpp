@@ -85,6 +85,7 @@ void ShadowAtlasImage::setDrawing(const ShadowDrawing& drawing) {
     if (drawing_ == drawing) return;
     drawing_ = drawing;
     drawn_.clear();
+    planned_.clear();
 }
 
 ShadowAtlasImage::Key ShadowAtlasImage::keyOf(const ShadowLight& light, const PlannedView& view) {
@@ -139,7 +140,7 @@ void ShadowAtlasImage::prepare(const GpuScene& scene, std::span<const ShadowLigh
         statistics_.drawnViews.push_back(static_cast<std::uint32_t>(&view - plan.views.data()));
         ++statistics_.viewsDrawn;
     }
-    drawn_ = std::move(now);
+    planned_ = std::move(now);
 }
 
 void ShadowAtlasImage::drawView(VkCommandBuffer commands, const GpuScene& scene, const Task& task,
@@ -217,6 +218,7 @@ void ShadowAtlasImage::drawLayer(VkCommandBuffer commands, const GpuScene& scene
 
 ShadowAtlasStatistics ShadowAtlasImage::record(VkCommandBuffer commands, const GpuScene& scene) {
     ShadowAtlasStatistics statistics = statistics_;
+    drawn_ = std::move(planned_);
     if (!tasks_.empty()) {
         constexpr Access kReaders{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE};
         VkImageMemoryBarrier2 barrier = imageBarrier(image_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kReaders,

@@ -85,7 +85,8 @@ private:
     GpuImage image_;
     PipelineLayout layout_;
     Pipeline opaque_, masked_;
-    std::unordered_map<std::uint64_t, Drawn> drawn_;  // per light * 8 + face
+    std::unordered_map<std::uint64_t, Drawn> drawn_;    // per light * 8 + face
+    std::unordered_map<std::uint64_t, Drawn> planned_;  // what drawn_ will be when this frame is recorded
     std::vector<Task> tasks_;
     ShadowAtlasStatistics statistics_;  // of the plan prepared last
     std::vector<DrawRange> ranges_;

@@ -43,8 +43,8 @@ Result createSets(View::State& state) {
 }
 
 // Points the buffer bindings of a frame in flight at the view's buffers, if they are others than before.
-void writeBuffers(View::State& state, std::uint32_t slot) {
-    FrameInFlight& frame = state.frames[slot];
+void writeBuffers(View::State& state, std::uint32_t index) {
+    FrameInFlight& frame = state.frames[index];
     if (frame.setsGeneration == state.buffers.generation) return;
     frame.setsGeneration = state.buffers.generation;
     VkDescriptorBufferInfo infos[kViewBufferCount] = {};
@@ -53,7 +53,7 @@ void writeBuffers(View::State& state, std::uint32_t slot) {
     for (std::uint32_t i = 0; i < kViewBufferCount; ++i) {
         const ViewBuffer& decl = viewBuffers()[i];
         if (decl.kind == BufferKind::Readback) continue;
-        infos[count].buffer = state.buffers.of(static_cast<ViewBufferId>(i), slot).buffer;
+        infos[count].buffer = state.buffers.of(static_cast<ViewBufferId>(i), index).buffer;
         infos[count].offset = decl.kind == BufferKind::Device ? state.desc.guardBytes : 0;
         infos[count].range = state.sizes.bytes[i];
         writes[count] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
@@ -85,23 +85,28 @@ void writeImages(const DeviceContext& device, VkDescriptorSet set, std::uint32_t
     }
 }
 
-void bindImages(View::State& state, FrameInFlight& slot, const FrameDesc& frame) {
+void bindImages(View::State& state, FrameInFlight& inFlight, const FrameDesc& frame) {
     const DeviceContext& device = state.context->device;
     const auto orElse = [](VkImageView view, VkImageView other) { return view != VK_NULL_HANDLE ? view : other; };
     const VkImageView receivers[kReceiversBindingCount] = {
         frame.depth.view, orElse(frame.faceNormals.view, state.noFaceNormals.view),
         orElse(frame.receiverFlags.view, state.noFaceNormals.view), orElse(frame.depthPyramid.view, frame.depth.view)};
-    writeImages(device, slot.sets[kSetReceivers], kBindDepth, receivers);
+    writeImages(device, inFlight.sets[kSetReceivers], kBindDepth, receivers);
     VkImageView atlases[kMaxShadowAtlases] = {};
     for (std::uint32_t i = 0; i < kMaxShadowAtlases; ++i) {
         atlases[i] = i < frame.atlases.size() ? frame.atlases[i].view : state.noAtlas.view;
     }
-    writeImages(device, slot.sets[kSetShadowmaps], kBindShadowAtlas0, atlases);
+    writeImages(device, inFlight.sets[kSetShadowmaps], kBindShadowAtlas0, atlases);
 }
 
 Result checkFrame(const View::State& state, const FrameDesc& frame) {
     if (!state.isPrepared) {
         return Result::failure(Status::BadArgument, "View::beginFrame() was called without View::prepare() before it.");
+    }
+    if (state.anyFrame && frame.frameNumber < state.lastFrame) {
+        return Result::failure(
+            Status::BadArgument, "FrameDesc::frameNumber is %llu; it must not be below that of the last frame, %llu.",
+            static_cast<unsigned long long>(frame.frameNumber), static_cast<unsigned long long>(state.lastFrame));
     }
     if (frame.depth.view == VK_NULL_HANDLE) return Result::failure(Status::BadArgument, "FrameDesc::depth is missing.");
     if (frame.settings.hostDepthPyramid && frame.depthPyramid.view == VK_NULL_HANDLE) {
@@ -156,10 +161,10 @@ Result checkCasters(const View::State& state, const FrameDesc& frame) {
     return {};
 }
 
-void completeFrameConstants(const FrameInFlight& slot, const FrameDesc& frame, GpuFrame& constants) {
+void completeFrameConstants(const FrameInFlight& inFlight, const FrameDesc& frame, GpuFrame& constants) {
     const ShadowSettings& settings = frame.settings;
-    constants.listCapacity = slot.listCapacity;
-    constants.slotCapacity = slot.slotCapacity;
+    constants.listCapacity = inFlight.listCapacity;
+    constants.slotCapacity = inFlight.slotCapacity;
     constants.fixedListEntries = settings.fixedListEntriesPerTile;
     if (frame.faceNormals.view != VK_NULL_HANDLE) constants.flags |= kFrameFaceNormalsBit;
     if (frame.receiverFlags.view != VK_NULL_HANDLE) constants.flags |= kFrameReceiverFlagsBit;
@@ -178,21 +183,22 @@ std::uint32_t grown(std::uint64_t used, std::uint64_t capacity, std::uint32_t re
     return std::max(std::min(recommended, most), static_cast<std::uint32_t>(capacity));
 }
 
-// Pools follow the need of the frame that has just finished, where the host allows it. Without memory for that they stay
-// as they are: overflow loses nothing, and a frame is worth more than its speed.
+// Pools follow the need of the frame that has just finished, where the host allows it. Without memory for that they
+// stay as they are: overflow loses nothing, it only costs time.
 void growPools(View::State& state, std::uint64_t frameNumber) noexcept {
     if (state.desc.mostListEntries == 0 && state.desc.mostVisibilitySlots == 0) return;
     if (state.growthFailed || frameNumber < state.desc.framesInFlight) return;
     FrameStatistics finished;
     if (!state.readCounters(frameNumber - state.desc.framesInFlight, finished)) return;
-    const FrameInFlight& slot = state.frames[frameNumber % state.desc.framesInFlight];
+    const FrameInFlight& inFlight = state.frames[frameNumber % state.desc.framesInFlight];
     ViewDesc desc = state.desc;
     const std::uint32_t entries =
         grown(finished.listEntries, state.sizes.listEntries, finished.recommendedListEntries, desc.mostListEntries);
     // Slots are counted in the frame's own bits.
-    const std::uint32_t bits = slot.settings.visibilityBits;
+    const std::uint32_t bits = inFlight.settings.visibilityBits;
     const auto inPoolBits = [&](std::uint64_t slots) {
-        return (slots * bits + desc.visibilityBits - 1) / desc.visibilityBits;
+        return std::min<std::uint64_t>((slots * bits + desc.visibilityBits - 1) / desc.visibilityBits,
+                                       kMaxVisibilitySlots);
     };
     const std::uint32_t slots =
         grown(inPoolBits(finished.visibilitySlots), state.sizes.visibilitySlots,
@@ -219,6 +225,18 @@ Result checkKept(const ViewDesc& from, const ViewDesc& to) {
                            "View::resize() cannot change framesInFlight, guardBytes or statistics; make another View.");
 }
 
+// A pool that has grown by itself keeps its size, unless the host now asks for another one than before.
+ViewDesc withGrownPools(const View::State& state, const ViewDesc& desc) {
+    ViewDesc out = desc;
+    const ViewSizes wanted = viewSizesOf(state.context->device, desc);
+    if (desc.listEntries == state.asked.listEntries && state.desc.listEntries != state.asked.listEntries)
+        out.listEntries = std::max(wanted.listEntries, state.sizes.listEntries);
+    if (desc.visibilitySlots == state.asked.visibilitySlots && desc.visibilityBits == state.asked.visibilityBits &&
+        state.desc.visibilitySlots != state.asked.visibilitySlots)
+        out.visibilitySlots = std::max(wanted.visibilitySlots, state.sizes.visibilitySlots);
+    return out;
+}
+
 bool samePrepare(const PrepareDesc& a, const PrepareDesc& b) {
     return a.maxWidthPx == b.maxWidthPx && a.maxHeightPx == b.maxHeightPx && a.rangeCutoffLux == b.rangeCutoffLux &&
            a.keepFactor == b.keepFactor;
@@ -235,9 +253,15 @@ View::State::~State() {
     d.vk.DestroyDescriptorPool(d.device, descriptors, nullptr);
 }
 
+// Everything that may fail comes before anything that cannot be taken back, but for phase 1's own size: where the
+// buffers fail after it, it is set back, and View::prepare() holds frames to the extent of `desc` in any case.
 Result View::State::resize(const ViewDesc& to) {
     const ViewSizes wanted = viewSizesOf(context->device, to);
     MemoryReport report = memoryReportOf(to, wanted);
+    const bool otherBounds =
+        wanted.boundsCells != sizes.boundsCells || to.shadowBoundsTexels != desc.shadowBoundsTexels;
+    ShadowBoundsCells cells;
+    if (otherBounds) cells.create(to.shadowBoundsTexels == 0 ? 0 : wanted.boundsCells);
     PrepareDesc prepareDesc = to.prepare;
     prepareDesc.maxWidthPx = to.maxWidthPx;
     prepareDesc.maxHeightPx = to.maxHeightPx;
@@ -248,14 +272,18 @@ Result View::State::resize(const ViewDesc& to) {
         isPrepared = false;
         if (Result made = prepare->resize(prepareDesc); !made) return made;
     }
-    const bool otherBounds =
-        wanted.boundsCells != sizes.boundsCells || to.shadowBoundsTexels != desc.shadowBoundsTexels;
-    if (Result made = buffers.make(context->device, to, sizes, wanted, lastFrame); !made) {
-        if (otherPrepare) (void)prepare->resize(desc.prepare);  // phase 1 may write no more than the buffers hold
+    Result made;
+    try {
+        made = buffers.make(context->device, to, sizes, wanted, lastFrame);
+    } catch (const std::bad_alloc&) {
+        made = Result::failure(Status::OutOfMemory, "Out of memory while making a view's buffers.");
+    }
+    if (!made) {
+        if (otherPrepare) (void)prepare->resize(desc.prepare);
         return made;
     }
     if (!anyFrame) buffers.release(context->device, ~0ull, 0);
-    if (otherBounds) boundsCells.create(to.shadowBoundsTexels == 0 ? 0 : wanted.boundsCells);
+    if (otherBounds) boundsCells = std::move(cells);
     desc = to;
     desc.prepare = prepareDesc;
     growthFailed = false;
@@ -284,6 +312,7 @@ Result View::create(const Context& context, const ViewDesc& desc, std::unique_pt
         state->context = &context.state();
         state->desc.framesInFlight = desc.framesInFlight;
         if (Result made = state->resize(desc); !made) return made;
+        state->asked = desc;
         const DeviceContext& device = context.state().device;
         if (Result made = createPlaceholder(device, VK_FORMAT_R16G16_UINT, VK_IMAGE_ASPECT_COLOR_BIT,
                                             VK_IMAGE_VIEW_TYPE_2D, state->noFaceNormals);
@@ -312,7 +341,9 @@ Result View::resize(const ViewDesc& desc) noexcept {
     try {
         if (Result checked = checkViewDesc(desc); !checked) return checked;
         if (Result checked = checkKept(state_->desc, desc); !checked) return checked;
-        return state_->resize(desc);
+        if (Result resized = state_->resize(withGrownPools(*state_, desc)); !resized) return resized;
+        state_->asked = desc;
+        return {};
     } catch (const std::bad_alloc&) {
         return Result::failure(Status::OutOfMemory, "Out of memory while resizing a view.");
     }
@@ -321,6 +352,11 @@ Result View::resize(const ViewDesc& desc) noexcept {
 Result View::prepare(const ViewInput& input, PreparedLights& out) noexcept {
     State& state = *state_;
     state.isPrepared = false;
+    if (input.widthPx > state.desc.maxWidthPx || input.heightPx > state.desc.maxHeightPx) {
+        return Result::failure(Status::BadArgument,
+                               "A frame of %ux%u pixels is above the view's maximum of %ux%u; call View::resize().",
+                               input.widthPx, input.heightPx, state.desc.maxWidthPx, state.desc.maxHeightPx);
+    }
     const auto start = std::chrono::steady_clock::now();
     if (Result result = state.prepare->run(input, state.prepared); !result) return result;
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
@@ -334,7 +370,7 @@ Result View::beginFrame(const FrameDesc& frame, PrepareReport* report) noexcept 
     State& state = *state_;
     if (Result checked = checkFrame(state, frame); !checked) return checked;
     const auto index = static_cast<std::uint32_t>(frame.frameNumber % state.desc.framesInFlight);
-    FrameInFlight& slot = state.frames[index];
+    FrameInFlight& inFlight = state.frames[index];
     try {
         if (Result found = state.context->pipelinesFor(frame.settings, state.pipelines); !found) return found;
     } catch (const std::bad_alloc&) {
@@ -342,50 +378,50 @@ Result View::beginFrame(const FrameDesc& frame, PrepareReport* report) noexcept 
     }
     growPools(state, frame.frameNumber);
     state.buffers.release(state.context->device, frame.frameNumber, state.desc.framesInFlight);
-    slot.frameNumber = ~0ull;
-    slot.ended = false;
-    slot.generated = false;
+    inFlight.frameNumber = ~0ull;
+    inFlight.ended = false;
+    inFlight.generated = false;
     const auto start = std::chrono::steady_clock::now();
     const auto mapped = [&](ViewBufferId id) { return state.buffers.of(id, index).mapped; };
     GpuFrame constants = {};
     const PrepareOutput output = {&constants, mapped(kBufferLights), mapped(kBufferZBins),
                                   mapped(kBufferTileLightMasks)};
     if (Result written = state.prepare->write(frame.lightViews, static_cast<std::uint32_t>(frame.shadowViews.size()),
-                                              output, &slot.lights);
+                                              output, &inFlight.lights);
         !written) {
         return written;
     }
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-    slot.prepareMilliseconds = state.prepareMilliseconds + elapsed.count();
+    inFlight.prepareMilliseconds = state.prepareMilliseconds + elapsed.count();
     if (Result checked = checkCasters(state, frame); !checked) return checked;
     auto* const views = static_cast<GpuShadowView*>(mapped(kBufferShadowViews));
     if (Result converted = convertShadowViews(frame.shadowViews, frame.atlases, views); !converted) return converted;
-    slot.boundsCellCount = 0;
+    inFlight.boundsCellCount = 0;
     if (frame.settings.shadowBounds) {
-        slot.boundsCellCount =
+        inFlight.boundsCellCount =
             state.boundsCells.list(frame.shadowViews, frame.atlases, views,
                                    static_cast<GpuShadowBoundsCell*>(mapped(kBufferShadowBoundsCells)));
     } else {
         state.boundsCells.skip(frame.shadowViews, frame.atlases);
     }
-    slot.settings = frame.settings;
-    slot.listCapacity = state.sizes.listEntries;
-    slot.slotCapacity = static_cast<std::uint32_t>(std::min<VkDeviceSize>(
+    inFlight.settings = frame.settings;
+    inFlight.listCapacity = state.sizes.listEntries;
+    inFlight.slotCapacity = static_cast<std::uint32_t>(std::min<VkDeviceSize>(
         state.sizes.bytes[kBufferVisibility] / (visibilitySlotWords(frame.settings.visibilityBits) * 4),
         kMaxVisibilitySlots));
-    completeFrameConstants(slot, frame, constants);
+    completeFrameConstants(inFlight, frame, constants);
     std::memcpy(mapped(kBufferFrame), &constants, sizeof(constants));
     writeBuffers(state, index);
-    bindImages(state, slot, frame);
-    slot.tiles = constants.tileCounts.x * constants.tileCounts.y;
-    slot.frameNumber = frame.frameNumber;
+    bindImages(state, inFlight, frame);
+    inFlight.tiles = constants.tileCounts.x * constants.tileCounts.y;
+    inFlight.frameNumber = frame.frameNumber;
     state.frame = constants;
     state.current = index;
     state.timeline = frame.timeline;
     state.lastFrame = frame.frameNumber;
     state.anyFrame = true;
     state.isPrepared = false;
-    if (report != nullptr) *report = slot.lights;
+    if (report != nullptr) *report = inFlight.lights;
     return {};
 }
 

@@ -27,7 +27,8 @@ struct FrameInFlight {
 
 struct GNOMON_HIDDEN View::State {
     Context::State* context = nullptr;
-    ViewDesc desc;
+    ViewDesc desc;   // as it is, with pools that have grown
+    ViewDesc asked;  // as the host asked for it last
     ViewSizes sizes;
     MemoryReport memory;
     std::unique_ptr<Prepare> prepare;

@@ -175,8 +175,7 @@ Result ViewBuffers::make(const DeviceContext& context, const ViewDesc& desc, con
         const auto id = static_cast<ViewBufferId>(i);
         const std::uint32_t copies = kBuffers[i].kind == BufferKind::Device ? 1u : desc.framesInFlight;
         for (std::uint32_t copy = 0; copy < copies && result; ++copy) {
-            made.push_back(
-                {copies == 1 && kBuffers[i].kind == BufferKind::Device ? &device[i] : &perFrame[copy][i], {}});
+            made.push_back({kBuffers[i].kind == BufferKind::Device ? &device[i] : &perFrame[copy][i], {}});
             result = makeBuffer(context, desc, id, sizes.bytes[i], made.back().buffer);
         }
     }
@@ -202,8 +201,8 @@ void ViewBuffers::release(const DeviceContext& context, std::uint64_t frame, std
 
 void ViewBuffers::destroy(const DeviceContext& context) noexcept {
     for (DeviceBuffer& buffer : device) destroyBuffer(context, buffer);
-    for (auto& slot : perFrame)
-        for (DeviceBuffer& buffer : slot) destroyBuffer(context, buffer);
+    for (auto& copy : perFrame)
+        for (DeviceBuffer& buffer : copy) destroyBuffer(context, buffer);
     for (Retired& r : retired_) destroyBuffer(context, r.buffer);
     retired_.clear();
 }

@@ -76,8 +76,8 @@ struct ViewBuffers {
     void release(const DeviceContext& context, std::uint64_t frame, std::uint32_t framesInFlight) noexcept;
     void destroy(const DeviceContext& context) noexcept;
 
-    [[nodiscard]] const DeviceBuffer& of(ViewBufferId id, std::uint32_t slot) const noexcept {
-        return viewBuffers()[id].kind == BufferKind::Device ? device[id] : perFrame[slot][id];
+    [[nodiscard]] const DeviceBuffer& of(ViewBufferId id, std::uint32_t copy) const noexcept {
+        return viewBuffers()[id].kind == BufferKind::Device ? device[id] : perFrame[copy][id];
     }
 
 private:

@@ -49,6 +49,11 @@ void preparePlaceholders(View::State& state, VkCommandBuffer commands) {
     state.context->device.vk.CmdPipelineBarrier2(commands, &info);
 }
 
+// Tells a frame's counters from those of others, and from memory that was never written.
+std::uint32_t stampOf(std::uint64_t frameNumber) {
+    return static_cast<std::uint32_t>(frameNumber) ^ 0x474E4F4Du;
+}
+
 // The frame's first commands: the last frame's reads end, counters and the indirect command start afresh.
 void resetFrame(View::State& state, VkCommandBuffer commands) {
     const Functions& vk = state.context->device.vk;
@@ -57,7 +62,8 @@ void resetFrame(View::State& state, VkCommandBuffer commands) {
     // All commands, so that it may be recorded on a compute queue too; the host's lighting may read in any stage.
     recorder.barrier(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                      kCompute | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, kStorageAccess | VK_ACCESS_2_TRANSFER_WRITE_BIT);
-    const GpuCounters counters = {};
+    GpuCounters counters = {};
+    counters.frameStamp = stampOf(state.frames[state.current].frameNumber);
     GpuEvaluateHead head = {};
     head.groupCountX = kEvaluateRowTiles;
     head.groupCountZ = 1;
@@ -123,10 +129,10 @@ void View::recordGenerateShadows(VkCommandBuffer commands) noexcept {
 void View::recordEndFrame(VkCommandBuffer commands) noexcept {
     State& state = *state_;
     const Functions& vk = state.context->device.vk;
-    FrameInFlight& slot = state.frames[state.current];
-    if (!slot.generated) clearFinalCounts(state, commands);
+    FrameInFlight& inFlight = state.frames[state.current];
+    if (!inFlight.generated) clearFinalCounts(state, commands);
     if (state.desc.statistics) {
-        recordPass(state, commands, kPassGatherStatistics, divideRoundingUp(slot.tiles, kWorkGroupSize), 1);
+        recordPass(state, commands, kPassGatherStatistics, divideRoundingUp(inFlight.tiles, kWorkGroupSize), 1);
     }
     Recorder recorder = recorderOf(state, commands);
     recorder.barrier(kCompute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
@@ -139,23 +145,24 @@ void View::recordEndFrame(VkCommandBuffer commands) noexcept {
     vk.CmdCopyBuffer(commands, state.buffers.device[kBufferEvaluateTiles].buffer, readback, 1, &head);
     recorder.barrier(VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_HOST_BIT,
                      VK_ACCESS_2_HOST_READ_BIT);
-    slot.ended = true;
+    inFlight.ended = true;
 }
 
 bool View::State::readCounters(std::uint64_t frameNumber, FrameStatistics& out) const noexcept {
     const auto index = static_cast<std::uint32_t>(frameNumber % desc.framesInFlight);
-    const FrameInFlight& slot = frames[index];
-    if (slot.frameNumber != frameNumber || !slot.ended) return false;
+    const FrameInFlight& inFlight = frames[index];
+    if (inFlight.frameNumber != frameNumber || !inFlight.ended) return false;
     const auto* mapped = static_cast<const std::byte*>(buffers.of(kBufferReadback, index).mapped);
     GpuCounters c;
     GpuEvaluateHead head;
     std::memcpy(&c, mapped, sizeof(c));
     std::memcpy(&head, mapped + sizeof(c), sizeof(head));
+    if (c.frameStamp != stampOf(frameNumber)) return false;  // recorded, but never submitted
     out = {};
     out.frameNumber = frameNumber;
-    out.lights = slot.lights;
-    out.listCapacity = slot.listCapacity;
-    out.slotCapacity = slot.slotCapacity;
+    out.lights = inFlight.lights;
+    out.listCapacity = inFlight.listCapacity;
+    out.slotCapacity = inFlight.slotCapacity;
     out.listEntries = c.listEntries;
     out.visibilitySlots = c.visibilitySlots;
     out.listOverflowTiles = c.listOverflowTiles;
@@ -163,8 +170,8 @@ bool View::State::readCounters(std::uint64_t frameNumber, FrameStatistics& out) 
     out.accurateExceedsApproximate = c.accurateExceedsApproximate;
     out.evaluateTiles = head.tileCount;
     out.recommendedListEntries = recommend(c.listEntries);
-    if (slot.settings.listReservation == ListReservation::Fixed) {
-        out.listEntries = slot.tiles * roundUpToEarlyWord(slot.settings.fixedListEntriesPerTile);
+    if (inFlight.settings.listReservation == ListReservation::Fixed) {
+        out.listEntries = inFlight.tiles * roundUpToEarlyWord(inFlight.settings.fixedListEntriesPerTile);
         out.recommendedListEntries = out.listEntries;
     }
     // Tiles without list space asked for no slot; their casting lights may need one each.
@@ -177,7 +184,7 @@ bool View::State::readCounters(std::uint64_t frameNumber, FrameStatistics& out) 
     out.finalEntries = c.finalEntries;
     out.finalSlotEntries = c.finalSlotEntries;
     out.maxLightsInTile = c.maxLightsInTile;
-    out.prepareMilliseconds = slot.prepareMilliseconds;
+    out.prepareMilliseconds = inFlight.prepareMilliseconds;
     return true;
 }
 

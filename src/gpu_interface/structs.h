@@ -160,6 +160,7 @@ struct GpuCounters {
     uint finalEntries;
     uint finalSlotEntries;
     uint maxLightsInTile;
+    uint frameStamp;  // of the host, never changed by a pass: which frame has been counted
 };
 
 // Head of the list of tiles to be shaded with evaluation; tile coordinates (y << 16 | x) follow.
@@ -200,7 +201,7 @@ static_assert(sizeof(GpuLight) == 96);
 static_assert(sizeof(GpuShadowView) == 208);
 static_assert(sizeof(GpuShadowBoundsCell) == 32);
 static_assert(sizeof(GpuFrame) == 16 * 16);
-static_assert(sizeof(GpuCounters) == 48);
+static_assert(sizeof(GpuCounters) == 52);
 static_assert(sizeof(GpuEvaluateHead) == 16);
 }  // namespace gnomon::gpu
 #endif

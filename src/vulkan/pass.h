@@ -15,7 +15,7 @@ enum class Access : std::uint8_t {
     Sampled,   // image or sampler of the host
     Read,      // storage buffer
     Write,     // storage buffer, written, or read and written
-    Indirect,  // the dispatch itself reads it as its command
+    Indirect,  // the dispatch itself reads it as its command: a pass that has one is dispatched indirectly
 };
 
 struct PassResource {

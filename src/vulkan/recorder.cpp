@@ -1,5 +1,8 @@
 #include "vulkan/recorder.h"
 
+#include <algorithm>
+#include <cassert>
+
 namespace gnomon {
 
 bool BarrierTracker::conflicts(const Use& use, Access access) const noexcept {
@@ -44,8 +47,7 @@ void Recorder::order(const Pass& pass, const std::array<BoundSet, gpu::kSetCount
         needed = needed || tracker_.conflicts(sets[resource.set].uses[resource.binding], resource.access);
     if (needed) {
         const VkPipelineStageFlags2 stages = kCompute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT;
-        barrier(stages, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, stages,
-                kStorage | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
+        barrier(stages, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, stages, kStorage | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT);
     }
     for (const PassResource& resource : pass.resources)
         tracker_.note(sets[resource.set].uses[resource.binding], resource.access);
@@ -70,6 +72,8 @@ void Recorder::dispatch(const Pass& pass, VkPipeline pipeline, VkPipelineLayout 
         vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, layout, set, 1, &sets[set].handle, 0,
                                  nullptr);
     }
+    assert(std::ranges::any_of(pass.resources, [](const PassResource& r) { return r.access == Access::Indirect; }) ==
+           (dispatch.indirect != VK_NULL_HANDLE));
     if (dispatch.indirect != VK_NULL_HANDLE) {
         vk.CmdDispatchIndirect(commands_, dispatch.indirect, dispatch.offset);
     } else {

@@ -140,8 +140,9 @@ TEST_F(Pools, StayWhereTheySuffice) {
     });
 }
 
-// A host that makes the pools smaller may lose a frame or two; what frames need is then known at once.
-TEST_F(Pools, GrowAgainAfterAResize) {
+// A resize that asks for the same pools as before keeps what has grown. One that asks for other pools gets them, and they
+// grow again.
+TEST_F(Pools, KeepTheirSizeThroughAResizeUnlessOtherPoolsAreAskedFor) {
     onEveryDevice([](const renderer::Device& device, const Context& context, SmallScene& scene) {
         ViewDesc desc = starved(2);
         desc.mostListEntries = desc.mostVisibilitySlots = 100000;
@@ -155,6 +156,12 @@ TEST_F(Pools, GrowAgainAfterAResize) {
             ASSERT_TRUE(view->statistics(last, s));
             EXPECT_FALSE(overflowed(s)) << round;
             EXPECT_GT(s.listCapacity, desc.listEntries);
+            desc.maxWidthPx += 8;
+            ASSERT_TRUE(view->resize(desc));
+            EXPECT_EQ(view->memory().listEntries, s.listCapacity);
+            EXPECT_EQ(view->memory().visibilitySlots, s.slotCapacity);
+            desc.listEntries += 3;
+            desc.visibilitySlots += 1;
             ASSERT_TRUE(view->resize(desc));
             EXPECT_EQ(view->memory().listEntries, desc.listEntries);
             EXPECT_EQ(view->memory().visibilitySlots, desc.visibilitySlots);

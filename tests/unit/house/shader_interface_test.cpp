@@ -129,7 +129,8 @@ std::vector<MemberLayout> gpuCounters() {
             MEMBER(GpuCounters, earlyCastingEntries),
             MEMBER(GpuCounters, finalEntries),
             MEMBER(GpuCounters, finalSlotEntries),
-            MEMBER(GpuCounters, maxLightsInTile)};
+            MEMBER(GpuCounters, maxLightsInTile),
+            MEMBER(GpuCounters, frameStamp)};
 }
 
 std::vector<MemberLayout> gpuEvaluateHead() {

@@ -1,5 +1,5 @@
-// Deferred shadows equal shadows evaluated while lighting: every stored visibility has 8 bits (or 4), and both ways return
-// the same ones, so the pictures may differ by the rounding of one sum of lights alone: 1/255.
+// Deferred shadows equal shadows evaluated while lighting: every stored visibility has 8 bits (or 4), and both ways
+// return the same ones, so the pictures may differ by the rounding of one sum of lights alone: 1/255.
 #include "image/renderer/harness.h"
 
 namespace gnomon::renderer::image_test {

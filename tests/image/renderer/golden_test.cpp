@@ -1,10 +1,10 @@
 // Pictures that a person has looked at, drawn with lavapipe: tests/image/golden/. GNOMON_UPDATE_GOLDEN=1 draws them
 // anew with the first CPU device whose name contains "llvmpipe".
 //
-// Other devices filter textures and place edges and shadow texels a little differently, so the tolerance is on shares: at
-// most 1 % of the pixels apart by more than 24/255, and a mean absolute difference of at most 0.5/255. In the courtyard,
-// full of leaves and textures that are finer than these pixels and texels, 10 % and 6/255: SwiftShader has 7.7 % and
-// 4.0/255, with PCF as much as with PCSS, and a quarter of it without any shadow.
+// Other devices filter textures and place edges and shadow texels a little differently, so the tolerance is on shares:
+// at most 1 % of the pixels apart by more than 24/255, and a mean absolute difference of at most 0.5/255. In the
+// courtyard, full of leaves and textures that are finer than these pixels and texels, 10 % and 6/255: SwiftShader
+// has 7.7 % and 4.0/255, with PCF as much as with PCSS, and a quarter of it without any shadow.
 #include <cstdlib>
 #include <filesystem>
 
@@ -20,8 +20,11 @@ struct GoldenCase {
     double meanAbsolute;  // of 255
     double shareApart;
 };
-constexpr GoldenCase kCases[] = {{"courtyard", 6.0, 0.1}, {"columns", 0.5, 0.01}, {"cloth", 0.5, 0.01},
-                                 {"masked", 0.5, 0.01},     {"sundial", 0.5, 0.01}};
+constexpr GoldenCase kCases[] = {{"courtyard", 6.0, 0.1},
+                                 {"columns", 0.5, 0.01},
+                                 {"cloth", 0.5, 0.01},
+                                 {"masked", 0.5, 0.01},
+                                 {"sundial", 0.5, 0.01}};
 constexpr int kApart = 24;
 
 double shareApart(const Picture& a, const Picture& b) {

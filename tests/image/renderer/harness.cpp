@@ -31,8 +31,8 @@ public:
     void TearDown() override {
         devices_.clear();
         EXPECT_EQ(instance_->messages().count(), 0u) << "while devices were destroyed";
-        // The instance stays: with it the drivers would be unloaded, and the leak checker could not tell whose memory is
-        // left (scripts/lsan.supp).
+        // The instance stays: with it the drivers would be unloaded, and the leak checker could not tell whose memory
+        // is left (scripts/lsan.supp).
         static VulkanInstance* kept = nullptr;
         kept = instance_.release();
         EXPECT_NE(kept, nullptr);
@@ -194,13 +194,18 @@ Difference expectEqual(const Device& device, const std::string& name, const HdrP
 
 Frame expectDeferredIsInline(const Device& device, const std::string& name, const View3d& view,
                              const RendererDesc& desc, Worst& worst, bool shadows) {
-    SCOPED_TRACE(name);
     Renderer renderer(device, view.scene, desc);
-    const Frame inlined = draw(renderer, view.camera, ShadowMode::Inline);
-    Frame deferred = draw(renderer, view.camera, ShadowMode::Deferred);
+    return expectDeferredIsInline(device, name, renderer, view.camera, worst, shadows);
+}
+
+Frame expectDeferredIsInline(const Device& device, const std::string& name, Renderer& renderer,
+                             const SceneCamera& camera, Worst& worst, bool shadows) {
+    SCOPED_TRACE(name);
+    const Frame inlined = draw(renderer, camera, ShadowMode::Inline);
+    Frame deferred = draw(renderer, camera, ShadowMode::Deferred);
     worst.add(expectEqual(device, name, inlined.linear, deferred.linear, 1), name);
     if (shadows) {
-        const Frame off = draw(renderer, view.camera, ShadowMode::Off);
+        const Frame off = draw(renderer, camera, ShadowMode::Off);
         const float exposure = automaticExposure(off.linear);
         const Difference seen = compare(toneMap(off.linear, exposure), toneMap(deferred.linear, exposure));
         EXPECT_GT(seen.largest, 8u) << "no shadow is to be seen";

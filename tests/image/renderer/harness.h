@@ -82,5 +82,7 @@ void writeFailure(const Device& device, const std::string& name, const Picture& 
 /// Deferred and inline frames of one renderer must be equal, and where `shadows` is set differ from the unshadowed one.
 Frame expectDeferredIsInline(const Device& device, const std::string& name, const View3d& view,
                              const RendererDesc& desc, Worst& worst, bool shadows);
+Frame expectDeferredIsInline(const Device& device, const std::string& name, Renderer& renderer,
+                             const SceneCamera& camera, Worst& worst, bool shadows);
 
 }  // namespace gnomon::renderer::image_test

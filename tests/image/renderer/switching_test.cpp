@@ -73,7 +73,8 @@ TEST_P(Switching, EveryPictureIsThatOfAFreshRenderer) {
         resizes += change.grows ? 1 : 0;
         EXPECT_EQ(kept.counts().views, 1u);
         EXPECT_EQ(kept.counts().resizes, resizes);
-        if (!thorough() && change.name == std::string("as it was again")) continue;
+        // Each fresh renderer is compiled anew: with sanitizers every third must do.
+        if (!thorough() && &change != &kChanges[1] && &change != &kChanges[4] && !change.remembers) continue;
         Renderer other(device(), view.scene, change.remembers ? desc : fresh);
         if (change.remembers) draw(other, view.camera, ShadowMode::Deferred);
         other.set(fresh.frame);

@@ -91,7 +91,8 @@ public:
           pose_(poseAt(view_.scene, 0.0)),
           traced_(view_.scene, pose_, glm::dvec3(view_.camera.worldFromCamera[3])) {
         draw(renderer_, view_.camera, ShadowMode::Deferred);
-        receivers_ = receiversOf(traced_, view_.camera, desc_.frame.widthPx, desc_.frame.heightPx, renderer_.readTriangleIds());
+        receivers_ =
+            receiversOf(traced_, view_.camera, desc_.frame.widthPx, desc_.frame.heightPx, renderer_.readTriangleIds());
     }
 
     // At an edge by the whole reach of the filter or by half of it.

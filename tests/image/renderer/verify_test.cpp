@@ -26,8 +26,9 @@ Verified verified(const Device& device, const View3d& view, const RendererDesc& 
     out.picture = draw(renderer, view.camera, ShadowMode::Deferred).linear;
     const Pose pose = poseAt(view.scene, 0.0);
     const SceneCamera camera = posedCamera(view.scene, pose, view.camera);
-    const TracedScene traced(view.scene, pose, glm::dvec3(camera.worldFromCamera[3]),
-                             {desc.frame.drawing.subsurfaceFronts, static_cast<double>(desc.frame.subsurfaceBiasMetres)});
+    const TracedScene traced(
+        view.scene, pose, glm::dvec3(camera.worldFromCamera[3]),
+        {desc.frame.drawing.subsurfaceFronts, static_cast<double>(desc.frame.subsurfaceBiasMetres)});
     const TruthExtent extent = {desc.frame.widthPx, desc.frame.heightPx};
     const std::vector<TruthReceiver> receivers =
         receiversOf(traced, camera, extent.widthPx, extent.heightPx, renderer.readTriangleIds());

@@ -448,7 +448,7 @@ TEST(MinimalHost, DrawsTheExpectedPictureOnEveryDevice) {
 TEST(MinimalHost, SaysWhatIsWrong) {
     const Outcome device = runProgram(15);
     EXPECT_NE(device.exitCode, 0);
-    expectSaid(device, "There is no such Vulkan device.");
+    expectSaid(device, "There is no such Vulkan device: give");
     const Outcome pools = runProgram(0, "many");
     EXPECT_NE(pools.exitCode, 0);
     expectSaid(pools, "The argument 'many' is no number.");

@@ -1,14 +1,16 @@
 #!/usr/bin/env bash
 # Builds everything with AddressSanitizer and UndefinedBehaviorSanitizer and runs all tests on every Vulkan device found.
+# The tests that wait for devices are built and run without sanitizers.
 #   ./test.sh          what every change must pass
-#   ./test.sh --full   the long tests too
+#   ./test.sh --full   the long tests too, and all of them with sanitizers
 # Sets a fresh Debian or Ubuntu machine up first.
 set -euo pipefail
 cd "$(dirname "$0")"
 . scripts/common.sh
+full=
 case "${1:-}" in
-    "") ;;
-    --full) export GNOMON_FULL=1 ;;
+    "") export GNOMON_QUICK=1 ;;
+    --full) full=1 GNOMON_FULL=1; export GNOMON_FULL ;;
     *)
         trap - EXIT
         echo "There is no option '$1': ./test.sh takes --full or nothing." >&2
@@ -19,9 +21,14 @@ esac
 step "Looking for packages that are missing"
 scripts/install_dependencies.sh --test
 
+# build PRESET TARGET...
+build() { cmake --preset "$1" && cmake --build --preset "$1" --parallel "$(nproc)" --target "${@:2}"; }
 step "Building with sanitizers (some minutes the first time; log in build/test.log)"
-build() { cmake --preset sanitize && cmake --build --preset sanitize --parallel "$(nproc)"; }
-quietly build/test.log build
+quietly build/test.log build sanitize all ${full:+driver_tests}
+if [ -z "$full" ]; then
+    step "Building the tests of devices (log in build/test.log)"
+    quietly build/test.log build check driver_tests
+fi
 
 # SwiftShader beside the installed drivers.
 swiftshader=/usr/lib/chromium/vk_swiftshader_icd.json
@@ -38,14 +45,25 @@ export LD_PRELOAD="$PWD/build/keep_drivers.so"
 step "Vulkan devices"
 build/sanitize/bin/gnomon devices
 
-step "Testing"
 # Two programs at a time: software devices compile shaders on one core, and that is most of what the image tests wait for.
-ctest --test-dir build/sanitize --output-on-failure --parallel 2
-log=build/sanitize/Testing/Temporary/LastTest.log
-if grep -qE '^(without validation|skipped:? validation)' "$log"; then
-    echo "Some tests found no validation layer, so they prove less than they should." >&2
-    exit 1
+# run_tests PRESET CTEST_OPTION...
+run_tests() {
+    ctest --test-dir "build/$1" --output-on-failure --parallel 2 "${@:2}"
+    local log="build/$1/Testing/Temporary/LastTest.log"
+    if grep -qE '^(without validation|skipped:? validation)' "$log"; then
+        echo "Some tests found no validation layer, so they prove less than they should." >&2
+        exit 1
+    fi
+    # ctest counts a program that skipped some of its cases as passed: say which.
+    grep -h '^\[  SKIPPED \]' "$log" | sort -u || true
+}
+if [ -n "$full" ]; then
+    step "Testing"
+    run_tests sanitize
+else
+    step "Testing with sanitizers"
+    run_tests sanitize --label-exclude drivers
+    step "Testing devices"
+    run_tests check --label-regex drivers
 fi
-# ctest counts a program that skipped some of its cases as passed: say which.
-grep -h '^\[  SKIPPED \]' "$log" | sort -u || true
 step "All tests are done"

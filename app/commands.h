@@ -2,8 +2,11 @@
 // The subcommands. Each adds itself to the command line. Parsing sets `chosen` to the work of the one that is used. The
 // work returns the exit code.
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+namespace CLI {
+class App;
+}
 
 namespace gnomon::app {
 

@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <memory>
@@ -5,6 +6,7 @@
 
 #include "app/commands.h"
 #include "app/errors.h"
+#include "app/option_checks.h"
 #include "app/outputs.h"
 #include "picture/picture.h"
 

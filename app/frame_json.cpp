@@ -1,5 +1,6 @@
 #include "app/frame_json.h"
 
+#include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 

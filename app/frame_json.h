@@ -2,7 +2,7 @@
 // One frame as JSON, for machines.
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "app/frame_table.h"
 

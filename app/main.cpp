@@ -1,5 +1,6 @@
 // gnomon: renders pictures with tiled deferred shadows, measures and verifies them, and compares pictures.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

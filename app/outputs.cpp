@@ -20,12 +20,6 @@ std::filesystem::path canonical(const std::string& file) {
 
 }  // namespace
 
-const CLI::Validator& fileName() {
-    static const CLI::Validator validator(
-        [](const std::string& name) { return name.empty() ? "give a file name" : ""; }, "FILE");
-    return validator;
-}
-
 bool liesIn(const std::string& file, const std::string& folder) {
     if (file.empty() || folder.empty()) return false;
     return canonical(file).parent_path() == (canonical(folder) / "file").parent_path();

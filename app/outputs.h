@@ -1,15 +1,10 @@
 #pragma once
 // The files a command is to write.
 
-#include <CLI/CLI.hpp>
-
 #include <span>
 #include <string>
 
 namespace gnomon::app {
-
-/// For options that name a file: an empty name is refused.
-const CLI::Validator& fileName();
 
 /// Whether the file is right within the folder, by canonical paths. Neither need be there; empty names lie nowhere.
 bool liesIn(const std::string& file, const std::string& folder);

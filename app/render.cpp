@@ -1,8 +1,10 @@
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "app/errors.h"
 #include "app/frame_json.h"
 #include "app/frame_table.h"
+#include "app/option_checks.h"
 #include "app/outputs.h"
 #include "app/progress.h"
 #include "app/session.h"

@@ -83,18 +83,6 @@ void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& hei
             fmt::format("'{}' has {} tiles of 8x8 pixels, and a picture may have {}.", text, tiles, kMostTiles));
 }
 
-CLI::Validator numberWithin(double low, double high) {
-    const std::string range = fmt::format("FLOAT in [{:g} - {:g}]", low, high);
-    return {[low, high](const std::string& text) {
-                double value = 0.0;
-                const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-                const bool good =
-                    error == std::errc() && end == text.data() + text.size() && low <= value && value <= high;
-                return good ? std::string() : fmt::format("'{}' is no number from {:g} to {:g}", text, low, high);
-            },
-            range};
-}
-
 const std::vector<std::string>& biasNames() {
     static const std::vector<std::string> names = {"oriented", "oriented-constant",   "paper",
                                                    "hardware", "hardware-no-normals", "none"};

@@ -2,13 +2,16 @@
 // The settings that `render`, `verify` and `bench` share: which scene, seen how, drawn by what. settings_table.h says
 // what each may be.
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "gpu_interface/packing.h"
 #include "renderer/renderer.h"
+
+namespace CLI {
+class App;
+}
 
 namespace gnomon::app {
 
@@ -50,9 +53,6 @@ struct Settings {
 
 /// The scene and all rows of the table, by groups. After a command's own options, so that these come first in its help.
 void addSettings(CLI::App& command, Settings& settings);
-
-/// As CLI::Range, which lets NaN pass.
-CLI::Validator numberWithin(double low, double high);
 
 /// Animation time of a frame, counted from 0; without frames per second time stands still.
 inline double frameTime(double firstSeconds, std::uint64_t frame, double framesPerSecond) {

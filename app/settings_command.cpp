@@ -1,5 +1,6 @@
 // gnomon settings: the table of settings, as docs/settings.md has it.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "app/commands.h"

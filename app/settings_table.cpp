@@ -1,14 +1,17 @@
 #include "app/settings_table.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <type_traits>
 
 #include "app/errors.h"
+#include "app/option_checks.h"
 #include "app/progress.h"
 #include "gpu_interface/numbers.h"
 

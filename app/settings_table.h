@@ -2,9 +2,8 @@
 // The one table of the program's settings: command line, JSON and docs follow from it. To add a setting: a row here, a
 // member of Settings, and the code that uses it.
 
-#include <CLI/CLI.hpp>
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <variant>

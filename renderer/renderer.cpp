@@ -30,21 +30,12 @@ std::unique_ptr<Timeline> makeTimeline(const Context& context) {
     return timeline;
 }
 
-std::unique_ptr<Context> makeContext(const Device& device, const RendererDesc& desc) {
-    const std::uint32_t family = device.queueFamily();
-    ContextDesc c;
-    c.instance = device.instance().handle();
-    c.physicalDevice = device.physical();
-    c.device = device.handle();
-    c.getInstanceProcAddr = vkGetInstanceProcAddr;
-    c.pipelineCache = device.pipelineCache();
-    c.queueFamilies = std::span(&family, 1);
-    c.debugLabels = device.instance().debugLabels();
-    c.subgroupSize = desc.subgroupSize;
-    c.maxShadowAtlases = 1;
-    std::unique_ptr<Context> context;
-    require(Context::create(c, context));
-    return context;
+std::shared_ptr<SharedPipelines> pipelinesFor(const Device& device, const RendererDesc& desc,
+                                              std::shared_ptr<SharedPipelines> given) {
+    if (given == nullptr) return std::make_shared<SharedPipelines>(device, desc.subgroupSize);
+    if (&given->device() != &device || given->wantedSubgroupSize() != desc.subgroupSize)
+        throw GpuError("Renderers can share pipelines of one device and one subgroup size only.");
+    return given;
 }
 
 ShadowPlanCamera planCameraOf(const SceneCamera& camera, const GBufferCamera& gbuffer, const glm::dvec3& origin,
@@ -96,7 +87,7 @@ struct Renderer::State {
     Pose pose;
     const std::vector<SceneLight>& sceneLights = pose.lights;
     std::vector<ShadowLight> shadowLights;
-    std::unique_ptr<Context> context;
+    std::shared_ptr<SharedPipelines> pipelines;
     std::unique_ptr<Timeline> timeline;
     GpuScene scene;
     GBuffer gbuffer;
@@ -117,18 +108,18 @@ struct Renderer::State {
         FrameReport report;  // all but statistics and passes
     } known[kFramesInFlight];
 
-    State(const Device& d, const Scene& s, const RendererDesc& r)
+    State(const Device& d, const Scene& s, const RendererDesc& r, std::shared_ptr<SharedPipelines> p)
         : device(d),
           settings(r.frame),
           posable(posablePart(s)),
           pose(poseAt(posable, 0.0)),
-          context(makeContext(d, r)),
-          timeline(makeTimeline(*context)),
+          pipelines(pipelinesFor(d, r, std::move(p))),
+          timeline(makeTimeline(pipelines->context())),
           scene(d, s),
           gbuffer(d, scene, r.frame.widthPx, r.frame.heightPx),
           planner(planSettingsOf(d, s, r)),
-          shadowmaps(d, *context, scene, r, planner.settings().atlasSizePx, kFramesInFlight),
-          lighting(d, *context, s, gbuffer),
+          shadowmaps(d, pipelines->context(), scene, r, planner.settings().atlasSizePx, kFramesInFlight),
+          lighting(d, pipelines->lighting(), s, gbuffer),
           commands{Commands(d), Commands(d)} {
         std::ranges::transform(sceneLights, std::back_inserter(shadowLights), shadowLightOf);
         takePose();
@@ -146,8 +137,9 @@ struct Renderer::State {
                    const ShadowSettings& shadows);
 };
 
-Renderer::Renderer(const Device& device, const Scene& scene, const RendererDesc& desc)
-    : state_(std::make_unique<State>(device, scene, desc)) {}
+Renderer::Renderer(const Device& device, const Scene& scene, const RendererDesc& desc,
+                   std::shared_ptr<SharedPipelines> pipelines)
+    : state_(std::make_unique<State>(device, scene, desc, std::move(pipelines))) {}
 
 Renderer::~Renderer() {
     if (state_ != nullptr) state_->device.waitIdle();
@@ -166,17 +158,18 @@ const FrameSettings& Renderer::settings() const {
 void Renderer::prepare(ShadowMode mode) {
     State& s = *state_;
     const ShadowSettings shadows = librarySettings(s.sceneLights, s.settings);
-    require(s.context->prepare(shadows));
+    LightingPipelines& lighting = s.pipelines->lighting();
+    require(s.pipelines->context().prepare(shadows));
     switch (mode) {
         case ShadowMode::Deferred:
-            s.lighting.prepare(LightingKind::Deferred, shadows, {});
-            s.lighting.prepare(LightingKind::Evaluate, shadows, {});
+            lighting.get(LightingKind::Deferred, shadows);
+            lighting.get(LightingKind::Evaluate, shadows);
             break;
         case ShadowMode::Inline:
-            s.lighting.prepare(LightingKind::Inline, shadows, s.settings.inlineVariant);
+            lighting.get(LightingKind::Inline, shadows, s.settings.inlineVariant);
             break;
         case ShadowMode::Off:
-            s.lighting.prepare(LightingKind::Unshadowed, shadows, s.settings.inlineVariant);
+            lighting.get(LightingKind::Unshadowed, shadows, s.settings.inlineVariant);
             break;
     }
 }
@@ -355,7 +348,8 @@ std::vector<float> Renderer::readVisibility(std::uint32_t light) {
     wait();
     const VkExtent2D whole = s.gbuffer.extent();
     if (s.lightVisibility == nullptr)
-        s.lightVisibility = std::make_unique<LightVisibility>(s.device, *s.context, whole.width, whole.height);
+        s.lightVisibility = std::make_unique<LightVisibility>(s.device, s.pipelines->lightVisibility(), whole.width,
+                                                              whole.height);
     return s.lightVisibility->read(*s.shadowmaps.current().view, s.lastShadows, light, s.lastExtent.width,
                                    s.lastExtent.height);
 }
@@ -387,12 +381,12 @@ const MemoryReport& Renderer::libraryMemory() const {
     return state_->shadowmaps.current().view->memory();
 }
 std::uint32_t Renderer::subgroupSize() const {
-    return state_->context->subgroupSize();
+    return state_->pipelines->context().subgroupSize();
 }
 RendererCounts Renderer::counts() const {
     const State& s = *state_;
-    return {s.context->pipelineCount(), static_cast<std::uint32_t>(s.lighting.pipelineCount()), s.shadowmaps.count(),
-            s.resizes};
+    return {s.pipelines->context().pipelineCount(), static_cast<std::uint32_t>(s.pipelines->lighting().count()),
+            s.shadowmaps.count(), s.resizes};
 }
 
 }  // namespace gnomon::renderer

@@ -12,6 +12,7 @@
 #include "renderer/frame/frame_settings.h"
 #include "renderer/frame/renderer_desc.h"
 #include "renderer/gpu/device.h"
+#include "renderer/shared_pipelines.h"
 #include "scene/scene.h"
 
 namespace gnomon::renderer {
@@ -32,7 +33,7 @@ struct FrameReport {
     std::uint32_t atlasSizePx = 0;
 };
 
-/// What was made so far: settings that change should make little.
+/// What was made so far, shared pipelines included: settings that change should make little.
 struct RendererCounts {
     std::uint32_t libraryPipelines = 0, lightingPipelines = 0;
     std::uint32_t views = 0, resizes = 0;
@@ -42,8 +43,9 @@ struct RendererCounts {
 class Renderer {
 public:
     /// Uploads the scene; it is copied as far as needed and may go afterwards. Lights must have ranges
-    /// (completeLights()).
-    Renderer(const Device& device, const Scene& scene, const RendererDesc& desc);
+    /// (completeLights()). Without `pipelines` it has its own.
+    Renderer(const Device& device, const Scene& scene, const RendererDesc& desc,
+             std::shared_ptr<SharedPipelines> pipelines = nullptr);
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;

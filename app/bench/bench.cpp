@@ -1,6 +1,7 @@
 // Measures variants in one process, in turn, frame by frame. So whatever the machine does meanwhile (clocks, heat,
 // other work) meets all of them alike. The ratio is the result.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "app/bench/report.h"
 #include "app/commands.h"
 #include "app/errors.h"
+#include "app/option_checks.h"
 #include "app/outputs.h"
 #include "app/progress.h"
 #include "app/session.h"
@@ -132,11 +134,7 @@ void benchWithin(const renderer::VulkanInstance& instance, const BenchOptions& o
     Measurement measured = {session, measure(session, options), std::nullopt, options.warmUp, options.framesPerSecond};
     checkLists(measured.variants);
     if (options.floor) measured.rates = renderer::measureDeviceRates(session.device());
-    if (!options.json.empty()) {
-        Json json = describeBench(measured);
-        if (!options.preset.empty()) json["preset"] = describePreset(options.preset, measured);
-        writeJson(json, options.json);
-    }
+    if (!options.json.empty()) writeMeasurement(measured, options.preset, options.json);
     printBench(measured);
     printPreset(options.preset, measured);
 }
@@ -185,7 +183,8 @@ void addBenchCommand(CLI::App& app, Work& chosen) {
     command->add_option("--json", options->json, "Write the measurement to a file")->check(fileName());
     addSettings(*command, options->settings);
     command->callback([&chosen, options, command] {
-        applyPreset(options->preset, *command, options->settings, options->variants);
+        const auto given = [command](const char* option) { return command->get_option(option)->count() != 0; };
+        applyPreset(options->preset, given, options->settings, options->variants);
         chosen = [options] { return bench(*options); };
     });
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "app/errors.h"
 #include "scene/builtin/builtin.h"
@@ -191,6 +192,14 @@ Json figure13Json(const Measurement& measured) {
     return rows;
 }
 
+Json describePreset(const std::string& preset, const Measurement& measured) {
+    return {{"name", preset},
+            {"likeThePapersScene", likeThePaper(meanShadowed(measured))},
+            {"rows", preset == kTable1   ? table1Json(measured)
+                     : preset == kTable2 ? table2Json(measured)
+                                         : figure13Json(measured)}};
+}
+
 }  // namespace
 
 const std::vector<std::string>& presetNames() {
@@ -198,10 +207,9 @@ const std::vector<std::string>& presetNames() {
     return names;
 }
 
-void applyPreset(const std::string& preset, const CLI::App& command, Settings& settings,
+void applyPreset(const std::string& preset, const std::function<bool(const char*)>& given, Settings& settings,
                  std::vector<std::string>& variants) {
     if (preset.empty()) return;
-    const auto given = [&](const char* option) { return command.get_option(option)->count() != 0; };
     if (!given("scene")) settings.scene = defaultScene();
     if (!given("--size")) settings.size = "3840x2160";
     if (!given("--filter")) settings.filter = "pcss";
@@ -223,12 +231,10 @@ void printPreset(const std::string& preset, const Measurement& measured) {
     printScene(measured);
 }
 
-Json describePreset(const std::string& preset, const Measurement& measured) {
-    return {{"name", preset},
-            {"likeThePapersScene", likeThePaper(meanShadowed(measured))},
-            {"rows", preset == kTable1   ? table1Json(measured)
-                     : preset == kTable2 ? table2Json(measured)
-                                         : figure13Json(measured)}};
+void writeMeasurement(const Measurement& measured, const std::string& preset, const std::filesystem::path& file) {
+    Json json = describeBench(measured);
+    if (!preset.empty()) json["preset"] = describePreset(preset, measured);
+    writeJson(json, file);
 }
 
 }  // namespace gnomon::app

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 namespace gnomon::app {
 
 std::string percent(double share) {
@@ -97,8 +99,13 @@ void printVerified(const Session& session, const VerifyResult& result) {
     if (!result.sweep.empty()) printSweep(result.sweep);
 }
 
-Json describe(const Session& session, const VerifyResult& result) {
+void writeVerified(const Session& session, const VerifyOptions& options, const VerifyResult& result,
+                   const std::filesystem::path& file) {
     Json out = describe(session);
+    out["settings"].update({{"rays", options.rays},
+                            {"subset", options.subset},
+                            {"edgeSet", options.edgeSet},
+                            {"lights", options.lights}});
     Json lights = Json::array();
     for (const VerifiedLight& light : result.lights) {
         Json row = {{"index", light.index},
@@ -118,7 +125,7 @@ Json describe(const Session& session, const VerifyResult& result) {
     out["castingLightsUnseen"] = result.unseen;
     if (!result.sweep.empty()) describeSweep(result.sweep, out);
     out["seconds"] = result.seconds;
-    return out;
+    writeJson(out, file);
 }
 
 }  // namespace gnomon::app

@@ -1,10 +1,12 @@
 #pragma once
 // What `verify` found, as a table and as JSON.
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "app/frame_json.h"
+#include "app/verify/options.h"
 #include "app/verify/sweep.h"
 #include "truth/figures.h"
 #include "truth/flicker.h"
@@ -35,6 +37,7 @@ std::string percent(double share);  ///< with four decimals, without the sign
 Json describe(const renderer::Figures& figures);
 
 void printVerified(const Session& session, const VerifyResult& result);
-Json describe(const Session& session, const VerifyResult& result);
+void writeVerified(const Session& session, const VerifyOptions& options, const VerifyResult& result,
+                   const std::filesystem::path& file);
 
 }  // namespace gnomon::app

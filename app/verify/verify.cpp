@@ -1,5 +1,6 @@
 // gnomon verify: the shadows of one frame against ray-traced truth, light by light.
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -7,6 +8,7 @@
 
 #include "app/commands.h"
 #include "app/errors.h"
+#include "app/option_checks.h"
 #include "app/outputs.h"
 #include "app/progress.h"
 #include "app/verify/verification.h"
@@ -36,14 +38,7 @@ void verifyWithin(const renderer::VulkanInstance& instance, const VerifyOptions&
     Verification verification(session, options, sweepOf(options));
     sayProgress(fmt::format("Drawn, and made ready to trace, in {:.1f} s.", setUp.seconds()));
     const VerifyResult result = verification.run();
-    if (!options.json.empty()) {
-        Json json = describe(session, result);
-        json["settings"].update({{"rays", options.rays},
-                                 {"subset", options.subset},
-                                 {"edgeSet", options.edgeSet},
-                                 {"lights", options.lights}});
-        writeJson(json, options.json);
-    }
+    if (!options.json.empty()) writeVerified(session, options, result, options.json);
     printVerified(session, result);
     if (!options.maps.empty()) fmt::print("Written: maps of {} lights in {}\n", result.lights.size(), options.maps);
 }

@@ -14,7 +14,7 @@ constexpr std::uint32_t kMostSpotPx = 1024, kMostFacePx = 512, kMostCascadePx = 
 // A view's rectangle reaches so many texels beyond its cone or its 90 degrees, on each side, so that filters at the
 // border find depths there. PCF needs its radius and two more.
 constexpr float kGuardTexels = 4;
-constexpr float kNearMetres = 0.05f;
+constexpr float kShadowNearMetres = 0.05f;
 
 // Of a point light's six views, in the order that the library wants.
 constexpr Vec3 kFaces[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -60,8 +60,9 @@ Mat4 viewOf(const gnomon::Light& light, std::uint32_t face, float sidePx, gnomon
     }
     const bool spot = light.type == gnomon::LightType::Spot;
     const float tangent = (spot ? std::tan(light.outerConeAngle) : 1.0f) * beyond;
-    view.nearMetres = kNearMetres;  // the far plane is at infinity, which is the default
-    return multiply(perspective(tangent, tangent, kNearMetres), lookAlong(position, spot ? direction : kFaces[face]));
+    view.nearMetres = kShadowNearMetres;  // the far plane is at infinity, which is the default
+    return multiply(perspective(tangent, tangent, kShadowNearMetres),
+                    lookAlong(position, spot ? direction : kFaces[face]));
 }
 
 bool sameTexels(const gnomon::ShadowView& a, const gnomon::ShadowView& b) {

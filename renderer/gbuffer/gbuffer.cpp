@@ -6,10 +6,10 @@ namespace gnomon::renderer {
 
 namespace {
 
-constexpr std::uint32_t kVertexSpirv[] = {
+constexpr std::uint32_t kGBufferVertexSpirv[] = {
 #include "gbuffer_vert.spv.h"
 };
-constexpr std::uint32_t kFragmentSpirv[] = {
+constexpr std::uint32_t kGBufferFragmentSpirv[] = {
 #include "gbuffer_frag.spv.h"
 };
 constexpr std::uint32_t kMaskedSpirv[] = {
@@ -56,8 +56,8 @@ GBuffer::GBuffer(const Device& device, const GpuScene& scene, std::uint32_t widt
     const VkDescriptorSetLayout sets[] = {scene.sceneSetLayout(), scene.materialSetLayout()};
     layout_ = makePipelineLayout(device, sets, VK_SHADER_STAGE_VERTEX_BIT, sizeof(Push));
     GraphicsPipelineDesc desc;
-    desc.vertexSpirv = kVertexSpirv;
-    desc.fragmentSpirv = kFragmentSpirv;
+    desc.vertexSpirv = kGBufferVertexSpirv;
+    desc.fragmentSpirv = kGBufferFragmentSpirv;
     desc.layout = layout_;
     desc.colourFormats.assign(kFormats.begin(), kFormats.end());
     desc.depthFormat = kDepthFormat;

@@ -32,8 +32,8 @@ std::span<const std::byte> bytesOf(const std::vector<T>& values) {
 
 }  // namespace
 
-Lighting::Lighting(const Device& device, const Context& context, const Scene& scene, const GBuffer& gbuffer)
-    : device_(device), pipelines_(device, context) {
+Lighting::Lighting(const Device& device, LightingPipelines& pipelines, const Scene& scene, const GBuffer& gbuffer)
+    : device_(device), pipelines_(pipelines) {
     std::vector<HostLight> lights(std::max<std::size_t>(scene.lights.size(), 1));
     std::transform(scene.lights.begin(), scene.lights.end(), lights.begin(), hostLightOf);
     hostLights_ = Buffer(device, "host_lights", lights.size() * sizeof(HostLight),
@@ -120,10 +120,6 @@ void Lighting::recordInline(VkCommandBuffer commands, const View& view, Lighting
     const TimelineScope scope(device_, timeline, commands, name, Phase::Lighting, RowKind::Compute);
     bind(commands, view, kind, pipeline);
     vkCmdDispatch(commands, tiles.width, tiles.height, 1);
-}
-
-void Lighting::prepare(LightingKind kind, const ShadowSettings& settings, const InlineVariant& variant) {
-    pipelines_.get(kind, settings, variant);
 }
 
 std::vector<MemoryRow> Lighting::memoryRows() const {

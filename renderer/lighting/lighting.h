@@ -15,8 +15,8 @@ namespace gnomon::renderer {
 /// Writes a linear R16G16B16A16_SFLOAT picture of the G-buffer's extent. Not thread safe.
 class Lighting {
 public:
-    /// Uploads the scene's light data. Throws GpuError.
-    Lighting(const Device& device, const Context& context, const Scene& scene, const GBuffer& gbuffer);
+    /// Uploads the scene's light data. The pipelines must outlive this. Throws GpuError.
+    Lighting(const Device& device, LightingPipelines& pipelines, const Scene& scene, const GBuffer& gbuffer);
     /// After the G-buffer was resized; the device must have finished with the old picture.
     void resize(const GBuffer& gbuffer);
 
@@ -27,10 +27,6 @@ public:
     void recordInline(VkCommandBuffer commands, const View& view, LightingKind kind, const ShadowSettings& settings,
                       const InlineVariant& variant, Timeline* timeline);
 
-    /// Makes the pipelines of a way to shade that do not exist yet. Throws GpuError.
-    void prepare(LightingKind kind, const ShadowSettings& settings, const InlineVariant& variant);
-    /// Pipelines made so far.
-    [[nodiscard]] std::size_t pipelineCount() const { return pipelines_.count(); }
     /// In GENERAL between frames.
     [[nodiscard]] const GpuImage& picture() const { return picture_; }
     [[nodiscard]] std::vector<MemoryRow> memoryRows() const;
@@ -41,7 +37,7 @@ private:
     void bind(VkCommandBuffer commands, const View& view, LightingKind kind, VkPipeline pipeline);
 
     const Device& device_;
-    LightingPipelines pipelines_;
+    LightingPipelines& pipelines_;
     GpuImage picture_;
     Buffer hostLights_, sceneConstants_;
     DescriptorPool pool_;

@@ -20,12 +20,12 @@ Axes axesOf(const glm::vec3& direction) {
     return a;
 }
 
-struct Sphere {
+struct SliceSphere {
     glm::dvec3 centre;
     double radius;
 };
 // The smallest sphere around the view's slice between two distances whose centre is on the axis.
-Sphere sphereAround(const CascadeCamera& camera, double from, double to) {
+SliceSphere sphereAround(const CascadeCamera& camera, double from, double to) {
     double middle = 0.5 * (from + to), radius = std::hypot(0.5 * (to - from), camera.halfDiagonalMetres);
     if (camera.halfDiagonalMetres == 0.0) {
         const double k = camera.tangent * camera.tangent;
@@ -54,7 +54,7 @@ Cascade cascadeAround(const CascadeSettings& settings, const CascadeCamera& came
                       const glm::vec3& direction, std::uint32_t index, std::uint32_t sizePx) {
     double ends[8] = {};
     cascadeEnds(settings, camera, casters, ends);
-    const Sphere sphere = sphereAround(camera, index == 0 ? 0.0 : ends[index - 1], ends[index]);
+    const SliceSphere sphere = sphereAround(camera, index == 0 ? 0.0 : ends[index - 1], ends[index]);
     const Axes axes = axesOf(direction);
     // The sphere, the margin that no receiver uses, and half a step to each side.
     const double usable = sizePx - 2.0 * gpu::kCascadeMarginPx - kCascadeStepPx;

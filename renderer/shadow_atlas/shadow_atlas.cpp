@@ -7,13 +7,13 @@
 namespace gnomon::renderer {
 
 namespace {
-constexpr std::uint32_t kVertexSpirv[] = {
+constexpr std::uint32_t kShadowVertexSpirv[] = {
 #include "shadow_vert.spv.h"
 };
 constexpr std::uint32_t kMaskedVertexSpirv[] = {
 #include "shadow_masked_vert.spv.h"
 };
-constexpr std::uint32_t kMaskedFragmentSpirv[] = {
+constexpr std::uint32_t kShadowMaskedFragmentSpirv[] = {
 #include "shadow_masked_frag.spv.h"
 };
 
@@ -68,14 +68,14 @@ ShadowAtlasImage::ShadowAtlasImage(const Device& device, const GpuScene& scene, 
     const VkDescriptorSetLayout sets[] = {scene.sceneSetLayout(), scene.materialSetLayout()};
     layout_ = makePipelineLayout(device, sets, VK_SHADER_STAGE_VERTEX_BIT, sizeof(glm::mat4));
     GraphicsPipelineDesc pipeline;
-    pipeline.vertexSpirv = kVertexSpirv;
+    pipeline.vertexSpirv = kShadowVertexSpirv;
     pipeline.layout = layout_;
     pipeline.depthFormat = kFormat;
     pipeline.dynamicCull = true;
     pipeline.dynamicDepthBias = true;
     opaque_ = makeGraphicsPipeline(device, pipeline);
     pipeline.vertexSpirv = kMaskedVertexSpirv;
-    pipeline.fragmentSpirv = kMaskedFragmentSpirv;
+    pipeline.fragmentSpirv = kShadowMaskedFragmentSpirv;
     masked_ = makeGraphicsPipeline(device, pipeline);
 }
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "scene/builtin/numbers.h"
+
 namespace gnomon::renderer::lab {
 namespace {
-
-constexpr float kPi = 3.14159265359f;
 
 // Hangs in folds from a rod, its hem 3 cm above the floor.
 void addCurtain(Lab& lab) {

@@ -2,14 +2,13 @@
 
 #include "scene/builtin/bias_lab.h"
 #include "scene/builtin/implicit_surface.h"
+#include "scene/builtin/numbers.h"
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace gnomon::renderer::lab {
 namespace {
-
-constexpr float kPi = 3.14159265359f;
 
 // A left foot in human size, cut above the ankle; toes along +z, the big one at +x, y = 0 its lowest point.
 float footField(const glm::vec3& p) {

@@ -1,6 +1,7 @@
 // Pictures of the bias lab.
 
 #include "scene/builtin/bias_lab.h"
+#include "scene/builtin/numbers.h"
 #include "scene/builtin/random.h"
 
 #include <algorithm>
@@ -9,13 +10,6 @@
 
 namespace gnomon::renderer::lab {
 namespace {
-
-constexpr float kPi = 3.14159265359f;
-
-float smooth(float low, float high, float v) {
-    const float t = std::clamp((v - low) / (high - low), 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
-}
 
 // sRGB and alpha, 0 to 1, at the middle of every texel of the unit square.
 Image painted(std::uint32_t size, const std::function<glm::vec4(float, float)>& texelAt) {

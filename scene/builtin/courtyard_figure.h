@@ -35,6 +35,11 @@ inline constexpr float kThighLength = 0.43f, kShinLength = 0.42f, kAnkleHeight =
 inline constexpr float kUpperArmLength = 0.27f, kForearmLength = 0.25f;
 inline constexpr float kHipHeight = 0.96f;
 
+/// Rotation about an axis of any length, radians.
+inline glm::quat about(const glm::vec3& axis, float angle) {
+    return glm::angleAxis(angle, glm::normalize(axis));
+}
+
 /// Joint in its parent's frame, standing with hanging arms.
 glm::vec3 bindTranslation(std::uint32_t joint);
 std::uint32_t parentOf(std::uint32_t joint);

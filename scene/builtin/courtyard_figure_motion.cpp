@@ -8,10 +8,11 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtx/quaternion.hpp>
 
+#include "scene/builtin/numbers.h"
+
 namespace gnomon::renderer::courtyard {
 namespace {
 
-constexpr float kTau = 6.28318530718f;
 constexpr int kSamplesPerCorner = 32;
 
 glm::quat aboutX(float angle) {

@@ -6,14 +6,11 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtx/quaternion.hpp>
 
+#include "scene/builtin/numbers.h"
+
 namespace gnomon::renderer::courtyard {
 namespace {
 
-constexpr float kTau = 6.28318530718f;
-
-glm::quat about(const glm::vec3& axis, float angle) {
-    return glm::angleAxis(angle, glm::normalize(axis));
-}
 const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
 
 // A wave that passes `times` times in one loop.

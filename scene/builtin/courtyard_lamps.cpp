@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "scene/builtin/numbers.h"
+
 namespace gnomon::renderer::courtyard {
 namespace {
 
@@ -70,7 +72,6 @@ std::uint32_t standingLantern(Parts& parts, float height, float postRadius) {
 }
 
 std::uint32_t paperLantern(Parts& parts, std::uint32_t paper, float cordLength) {
-    constexpr float kTau = 6.28318530718f;
     ShapeBuilder shade(paper), frame(parts.materials.iron);
     shade.sheet(
         [](float u, float v) {
@@ -87,7 +88,7 @@ std::uint32_t paperLantern(Parts& parts, std::uint32_t paper, float cordLength) 
 }
 
 std::uint32_t piercedDrum(Parts& parts) {
-    constexpr float kTau = 6.28318530718f, kRadius = 0.21f, kHalf = 0.22f;
+    constexpr float kRadius = 0.21f, kHalf = 0.22f;
     ShapeBuilder drum(parts.materials.pierced), rims(parts.materials.iron);
     drum.sheet(
         [](float u, float v) {

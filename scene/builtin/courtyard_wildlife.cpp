@@ -5,14 +5,10 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "scene/builtin/numbers.h"
+
 namespace gnomon::renderer::courtyard {
 namespace {
-
-constexpr float kTau = 6.28318530718f;
-
-glm::quat about(const glm::vec3& axis, float angle) {
-    return glm::angleAxis(angle, glm::normalize(axis));
-}
 
 // Upright ellipses around (0, y, z), from below.
 struct Slice {

@@ -1,5 +1,6 @@
 #include "scene/builtin/foliage_textures.h"
 
+#include "scene/builtin/numbers.h"
 #include "scene/builtin/random.h"
 
 #include <algorithm>
@@ -8,13 +9,6 @@
 
 namespace gnomon::renderer {
 namespace {
-
-constexpr float kPi = 3.14159265359f;
-
-float smooth(float low, float high, float v) {
-    const float t = std::clamp((v - low) / (high - low), 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
-}
 
 // Paints shapes over each other, back to front; the unit square, y upwards.
 class Card {

@@ -8,23 +8,23 @@
 namespace gnomon::renderer {
 namespace {
 
-using Place = std::array<std::uint32_t, 3>;
+using GridIndex = std::array<std::uint32_t, 3>;
 
 // Samples on a grid, and the vertex of every cell between them.
 struct Grid {
     glm::vec3 origin{0.0f};
     float cell = 0.0f;
-    Place samples{};
+    GridIndex samples{};
     std::vector<float> values;
     std::vector<std::uint32_t> vertexOfCell;
 
-    [[nodiscard]] std::size_t index(const Place& p) const {
+    [[nodiscard]] std::size_t index(const GridIndex& p) const {
         return (std::size_t(p[2]) * samples[1] + p[1]) * samples[0] + p[0];
     }
-    [[nodiscard]] bool inside(const Place& p) const { return values[index(p)] < 0.0f; }
+    [[nodiscard]] bool inside(const GridIndex& p) const { return values[index(p)] < 0.0f; }
 };
 
-Place stepped(Place p, std::size_t axis, int by) {
+GridIndex stepped(GridIndex p, std::size_t axis, int by) {
     p[axis] += static_cast<std::uint32_t>(by);
     return p;
 }
@@ -46,13 +46,13 @@ Grid sampled(const SolidField& solid, const Bounds& box, float cell) {
 
 // The mean of the places where the surface crosses the cell's edges, in cells from its low corner. Empty where it
 // crosses none.
-std::optional<glm::vec3> vertexIn(const Grid& grid, const Place& cell) {
+std::optional<glm::vec3> vertexIn(const Grid& grid, const GridIndex& cell) {
     glm::vec3 sum(0.0f);
     int crossings = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         for (int corner = 0; corner < 4; ++corner) {
             const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
-            const Place from = stepped(stepped(cell, b, corner & 1), c, corner >> 1), to = stepped(from, axis, 1);
+            const GridIndex from = stepped(stepped(cell, b, corner & 1), c, corner >> 1), to = stepped(from, axis, 1);
             if (grid.inside(from) == grid.inside(to)) continue;
             const float low = grid.values[grid.index(from)], high = grid.values[grid.index(to)];
             glm::vec3 at(0.0f);
@@ -118,7 +118,7 @@ void addQuads(const Grid& grid, Primitive& mesh) {
     for (std::uint32_t z = 1; z + 1 < grid.samples[2]; ++z) {
         for (std::uint32_t y = 1; y + 1 < grid.samples[1]; ++y) {
             for (std::uint32_t x = 1; x + 1 < grid.samples[0]; ++x) {
-                const Place here{x, y, z};
+                const GridIndex here{x, y, z};
                 for (std::size_t axis = 0; axis < 3; ++axis) {
                     const bool in = grid.inside(here);
                     if (in == grid.inside(stepped(here, axis, 1))) continue;

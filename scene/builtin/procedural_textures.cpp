@@ -1,5 +1,6 @@
 #include "scene/builtin/procedural_textures.h"
 
+#include "scene/builtin/numbers.h"
 #include "scene/builtin/random.h"
 
 #include <algorithm>
@@ -17,11 +18,6 @@ struct Texel {
 
 std::uint8_t toByte(float v) {
     return static_cast<std::uint8_t>(std::clamp(v, 0.0f, 1.0f) * 255.0f + 0.5f);
-}
-
-float smooth(float low, float high, float v) {
-    const float t = std::clamp((v - low) / (high - low), 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
 }
 
 // Value noise that repeats after `cellsU` by `cellsV` cells over the unit square.

@@ -7,10 +7,11 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 
+#include "scene/builtin/numbers.h"
+
 namespace gnomon::renderer {
 namespace {
 
-constexpr float kTau = 6.28318530718f;
 constexpr float kSharpCosine = 0.766f;  // 40 degrees: corners sharper than this keep separate normals
 
 // Box projection: u to the right and v downwards for a viewer in front of the face.

@@ -4,10 +4,11 @@
 
 #include <cmath>
 
+#include "scene/builtin/numbers.h"
+
 namespace gnomon::renderer {
 
 void ShapeBuilder::loft(std::span<const Ring> rings, int sides) {
-    constexpr float kTau = 6.28318530718f;
     const auto first = static_cast<std::uint32_t>(vertexCount());
     const auto around = static_cast<std::uint32_t>(sides) + 1;
     const auto angleOf = [&](int k) { return kTau * static_cast<float>(k % sides) / static_cast<float>(sides); };

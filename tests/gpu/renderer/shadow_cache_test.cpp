@@ -254,11 +254,12 @@ TEST_F(ShadowCacheTest, RendererFollowsTime) {
         desc.frame.heightPx = 96;
         desc.atlasSizePx = 512;
         desc.frame.filters = {Filter::Hard};
-        Renderer kept(device, scene, desc);
+        const auto pipelines = std::make_shared<SharedPipelines>(device);
+        Renderer kept(device, scene, desc, pipelines);
         for (double seconds : {0.0, 0.25, 0.5, 0.75}) kept.renderFrame(scene.cameras[0], ShadowMode::Deferred, seconds);
         const std::vector<float> moving = kept.readPicture().rgba;
         const std::vector<std::uint32_t> ids = kept.readTriangleIds();
-        Renderer fresh(device, scene, desc);
+        Renderer fresh(device, scene, desc, pipelines);
         fresh.renderFrame(scene.cameras[0], ShadowMode::Deferred, 0.75);
         EXPECT_EQ(moving, fresh.readPicture().rgba);
         EXPECT_EQ(ids, fresh.readTriangleIds());
@@ -322,12 +323,13 @@ TEST_F(ShadowCacheTest, AMomentLooksLikeAStillScene) {
         desc.frame.heightPx = 96;
         desc.atlasSizePx = 2048;
         desc.frame.filters = {Filter::Hard};
-        Renderer moving(device, scene, desc);
+        const auto pipelines = std::make_shared<SharedPipelines>(device);
+        Renderer moving(device, scene, desc, pipelines);
         moving.renderFrame(camera, ShadowMode::Deferred, 0.1);
         const std::vector<float> before = moving.readPicture().rgba;
         moving.renderFrame(camera, ShadowMode::Deferred, 0.265);
         const std::vector<float> picture = moving.readPicture().rgba;
-        Renderer still(device, posedScene(scene, poseAt(scene, 0.265)), desc);
+        Renderer still(device, posedScene(scene, poseAt(scene, 0.265)), desc, pipelines);
         still.renderFrame(camera, ShadowMode::Deferred);
         EXPECT_GT(differingPixels(before, picture), 150u);                   // the shadow of the slab
         EXPECT_LT(differingPixels(picture, still.readPicture().rgba), 60u);  // its edges: other cascades

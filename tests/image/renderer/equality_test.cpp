@@ -129,7 +129,8 @@ TEST_P(DeferredIsInline, PatternPerFrame) {
     const View3d view = builtin("boxes");
     RendererDesc desc = withFilter(kPcss);
     desc.frame.shadows.patternPerFrame = true;
-    Renderer inlined(device(), view.scene, desc), deferred(device(), view.scene, desc);
+    Renderer inlined(device(), view.scene, desc, pipelinesOf(device()));
+    Renderer deferred(device(), view.scene, desc, pipelinesOf(device()));
     HdrPicture before;
     Worst worst;
     for (int frame = 0; frame < 3; ++frame) {
@@ -150,10 +151,10 @@ TEST_P(DeferredIsInline, ShadowBoundsChangeNothing) {
         SCOPED_TRACE(view.name);
         RendererDesc desc = withFilter(kPcss);
         desc.frame.shadows.shadowBounds = false;
-        Renderer plain(device(), view.scene, desc);
+        Renderer plain(device(), view.scene, desc, pipelinesOf(device()));
         const HdrPicture expected = draw(plain, view.camera, ShadowMode::Deferred).linear;
         desc.frame.shadows.shadowBounds = true;
-        Renderer bounded(device(), view.scene, desc);
+        Renderer bounded(device(), view.scene, desc, pipelinesOf(device()));
         draw(bounded, view.camera, ShadowMode::Off);  // draws the shadowmaps, makes no bounds
         for (const ShadowMode mode : {ShadowMode::Deferred, ShadowMode::Inline}) {
             const HdrPicture actual = draw(bounded, view.camera, mode).linear;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 
 #include "renderer/gpu/error.h"
 
@@ -28,7 +29,14 @@ public:
         return *devices_[index];
     }
 
+    const std::shared_ptr<SharedPipelines>& pipelinesOf(const Device& device, std::uint32_t subgroupSize) {
+        std::shared_ptr<SharedPipelines>& pipelines = pipelines_[{&device, subgroupSize}];
+        if (pipelines == nullptr) pipelines = std::make_shared<SharedPipelines>(device, subgroupSize);
+        return pipelines;
+    }
+
     void TearDown() override {
+        pipelines_.clear();
         devices_.clear();
         EXPECT_EQ(instance_->messages().count(), 0u) << "while devices were destroyed";
         // The instance stays: with it the drivers would be unloaded, and the leak checker could not tell whose memory
@@ -58,6 +66,7 @@ private:
     std::unique_ptr<VulkanInstance> instance_;
     std::vector<DeviceInfo> infos_;
     std::vector<std::unique_ptr<Device>> devices_;
+    std::map<std::pair<const Device*, std::uint32_t>, std::shared_ptr<SharedPipelines>> pipelines_;
 };
 
 std::string plainName(const std::string& text) {
@@ -72,6 +81,11 @@ std::string plainName(const std::string& text) {
     return out;
 }
 
+bool isSet(const char* variable) {
+    const char* value = std::getenv(variable);
+    return value != nullptr && *value != '\0' && *value != '0';
+}
+
 TEST(Devices, AtLeastOneIsThere) {
     EXPECT_FALSE(Devices::get().infos().empty()) << "no image test has run";
 }
@@ -79,16 +93,15 @@ TEST(Devices, AtLeastOneIsThere) {
 }  // namespace
 
 bool fullRun() {
-    const char* value = std::getenv("GNOMON_FULL");
-    return value != nullptr && *value != '\0' && *value != '0';
+    return isSet("GNOMON_FULL");
 }
 
-bool sanitized() {
-#if defined(__SANITIZE_ADDRESS__)
-    return true;
-#else
-    return false;
-#endif
+bool thorough() {
+    return fullRun() || !isSet("GNOMON_QUICK");
+}
+
+std::shared_ptr<SharedPipelines> pipelinesOf(const Device& device, std::uint32_t subgroupSize) {
+    return Devices::get().pipelinesOf(device, subgroupSize);
 }
 
 const Device& ImageTest::device() const {
@@ -146,7 +159,7 @@ Frame draw(Renderer& renderer, const SceneCamera& camera, ShadowMode mode) {
 }
 
 Frame drawOnce(const Device& device, const View3d& view, const RendererDesc& desc, ShadowMode mode) {
-    Renderer renderer(device, view.scene, desc);
+    Renderer renderer(device, view.scene, desc, pipelinesOf(device, desc.subgroupSize));
     return draw(renderer, view.camera, mode);
 }
 
@@ -194,7 +207,7 @@ Difference expectEqual(const Device& device, const std::string& name, const HdrP
 
 Frame expectDeferredIsInline(const Device& device, const std::string& name, const View3d& view,
                              const RendererDesc& desc, Worst& worst, bool shadows) {
-    Renderer renderer(device, view.scene, desc);
+    Renderer renderer(device, view.scene, desc, pipelinesOf(device, desc.subgroupSize));
     return expectDeferredIsInline(device, name, renderer, view.camera, worst, shadows);
 }
 

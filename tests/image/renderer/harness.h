@@ -17,12 +17,11 @@ namespace gnomon::renderer::image_test {
 
 /// GNOMON_FULL=1: every combination instead of a chosen few.
 bool fullRun();
-/// True in a build with AddressSanitizer.
-bool sanitized();
-/// False where a handful of cases must do: in a build with sanitizers that is no full run.
-inline bool thorough() {
-    return fullRun() || !sanitized();
-}
+/// False where a handful of cases must do: with GNOMON_QUICK=1, as test.sh has it, unless GNOMON_FULL=1.
+bool thorough();
+
+/// Renderers of a device share these, so that each pipeline is compiled once: software devices take seconds for each.
+std::shared_ptr<SharedPipelines> pipelinesOf(const Device& device, std::uint32_t subgroupSize = 0);
 
 /// One test per suitable Vulkan device; fails on any validation message.
 class ImageTest : public ::testing::TestWithParam<std::size_t> {
@@ -50,7 +49,7 @@ View3d orthographic(View3d view, float focusMetres);
 
 /// Of Filter::Pcss where the number of taps does not matter: software devices are slow.
 inline constexpr PcssTaps kFewTaps = {4, 6};
-/// Small enough for software devices: few taps, 240x135 and an atlas of 2048 (under sanitizers 1024).
+/// Small enough for software devices: few taps, 240x135 and an atlas of 2048 (1024 where a handful of cases must do).
 RendererDesc smallDesc(std::uint32_t widthPx = 240, std::uint32_t heightPx = 135);
 
 struct Frame {

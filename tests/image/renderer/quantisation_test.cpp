@@ -33,7 +33,7 @@ TEST_P(Quantisation, CostsAtMostTwoSteps) {
         RendererDesc desc = smallDesc();
         desc.frame.shadows.pcssPresets[0] = {8, 24};
         desc.frame.inlineVariant.quantises = false;
-        Renderer renderer(device(), view.scene, desc);
+        Renderer renderer(device(), view.scene, desc, pipelinesOf(device()));
         const Frame exact = draw(renderer, view.camera, ShadowMode::Inline);
         const Frame deferred = draw(renderer, view.camera, ShadowMode::Deferred);
         desc.frame.shadows.visibilityBits = 4;

@@ -19,7 +19,7 @@ void expectOneHash(const Device& device, const RendererDesc& desc, const char* n
     const View3d view = builtin("sundial", 64);
     HdrPicture first;
     for (int run = 0; run < 2; ++run) {
-        Renderer renderer(device, view.scene, desc);
+        Renderer renderer(device, view.scene, desc, pipelinesOf(device));
         for (int frame = 0; frame < 3; ++frame) {
             const HdrPicture picture = draw(renderer, view.camera, ShadowMode::Deferred).linear;
             if (first.rgba.empty()) first = picture;
@@ -59,7 +59,7 @@ TEST_P(Repeated, ShadowmapsAreKept) {
         if (!thorough() && scene != std::string("columns")) continue;
         SCOPED_TRACE(scene);
         const View3d view = builtin(scene);
-        Renderer kept(device(), view.scene, smallDesc());
+        Renderer kept(device(), view.scene, smallDesc(), pipelinesOf(device()));
         const Frame first = draw(kept, view.camera, ShadowMode::Deferred);
         EXPECT_GT(first.report.shadowViewsDrawn, 0u);
         const Frame still = draw(kept, view.camera, ShadowMode::Deferred);

@@ -62,7 +62,7 @@ TEST_P(Switching, EveryPictureIsThatOfAFreshRenderer) {
     RendererDesc desc = smallDesc();
     // Where pools overflow, other pipelines shade, which may differ in the last bit: they are large enough here.
     desc.listEntries = desc.visibilitySlots = 1u << 17;
-    Renderer kept(device(), view.scene, desc);
+    Renderer kept(device(), view.scene, desc, pipelinesOf(device()));
     std::uint32_t resizes = 0;
     for (const Change& change : kChanges) {
         SCOPED_TRACE(change.name);
@@ -73,10 +73,10 @@ TEST_P(Switching, EveryPictureIsThatOfAFreshRenderer) {
         resizes += change.grows ? 1 : 0;
         EXPECT_EQ(kept.counts().views, 1u);
         EXPECT_EQ(kept.counts().resizes, resizes);
-        // Each fresh renderer is compiled anew: with sanitizers three must do.
+        // A few of them where a handful must do.
         const std::string name = change.name;
         if (!thorough() && name != "hard" && name != "slots of 4 bits" && name != "smaller") continue;
-        Renderer other(device(), view.scene, change.remembers ? desc : fresh);
+        Renderer other(device(), view.scene, change.remembers ? desc : fresh, pipelinesOf(device()));
         if (change.remembers) draw(other, view.camera, ShadowMode::Deferred);
         other.set(fresh.frame);
         const Frame expected = draw(other, view.camera, ShadowMode::Deferred);
@@ -109,7 +109,7 @@ TEST_P(Switching, PreparedFramesMakeNoPipelines) {
     const View3d view = builtin("boxes");
     RendererDesc desc = smallDesc(64, 40);
     desc.frame.filters = {Filter::Hard};
-    Renderer renderer(device(), view.scene, desc);
+    Renderer renderer(device(), view.scene, desc);  // with pipelines of its own
     for (const ShadowMode mode : {ShadowMode::Deferred, ShadowMode::Inline, ShadowMode::Off}) {
         const RendererCounts none = renderer.counts();
         renderer.prepare(mode);
@@ -129,7 +129,7 @@ TEST_P(Switching, KeptDrawingsAreNotDrawnAgain) {
     desc.keptDrawings = 2;
     FrameSettings biased = desc.frame;
     biased.drawing.bias = {.slopeFactor = 1.0f};
-    Renderer renderer(device(), view.scene, desc);
+    Renderer renderer(device(), view.scene, desc, pipelinesOf(device()));
     for (int round = 0; round < 3; ++round)
         for (const FrameSettings* settings : {&desc.frame, &biased}) {
             renderer.set(*settings);
@@ -148,7 +148,7 @@ TEST_P(Switching, PoolsGrowWithinTheirLimit) {
     desc.listEntries = 96;
     desc.visibilitySlots = 8;
     desc.mostListEntries = desc.mostVisibilitySlots = 1u << 20;
-    Renderer renderer(device(), view.scene, desc);
+    Renderer renderer(device(), view.scene, desc, pipelinesOf(device()));
     std::uint32_t overflowing = 0;
     for (int frame = 0; frame < 8; ++frame) {
         const Frame now = draw(renderer, view.camera, ShadowMode::Deferred);

@@ -21,7 +21,7 @@ constexpr std::uint64_t kFewPixels = 16;
 // 0.002 %, PCF 0.028 % (7.5 % with an offset by the sine of the angle to the light alone).
 constexpr double kMostLitOff = 0.001;
 
-struct FilterCase {
+struct TruthFilter {
     const char* name;
     Filter filter;
     std::uint32_t radius;
@@ -29,7 +29,7 @@ struct FilterCase {
     // point along the face normal, which is as wide as the kernel.
     double edgeTexels;
 };
-constexpr FilterCase kFilters[] = {{"hard", Filter::Hard, 1, 0.71 + 1.0}, {"pcf1", Filter::Pcf, 1, 2.83 + 2.0}};
+constexpr TruthFilter kFilters[] = {{"hard", Filter::Hard, 1, 0.71 + 1.0}, {"pcf1", Filter::Pcf, 1, 2.83 + 2.0}};
 
 struct LightCase {
     const char* scene;
@@ -83,7 +83,7 @@ Counts count(const LightTruth& truth, const std::vector<float>& visibility) {
 // A scene drawn once by a filter, to be judged light by light.
 class Drawn {
 public:
-    Drawn(const Device& device, const char* scene, const FilterCase& filter)
+    Drawn(const Device& device, const char* scene, const TruthFilter& filter)
         : view_(builtin(scene)),
           desc_(descOf(filter)),
           renderer_(device, view_.scene, desc_),
@@ -114,7 +114,7 @@ public:
     [[nodiscard]] const RendererDesc& desc() const { return desc_; }
 
 private:
-    static RendererDesc descOf(const FilterCase& filter) {
+    static RendererDesc descOf(const TruthFilter& filter) {
         RendererDesc desc = smallDesc();
         desc.frame.filters = {filter.filter};
         desc.frame.shadows.pcfRadius = filter.radius;
@@ -159,7 +159,7 @@ Counts checkLight(const Device& device, Drawn& drawn, const std::string& name, s
 }
 
 TEST_P(RayTruth, ShadowsStandWhereTheyBelong) {
-    for (const FilterCase& filter : kFilters) {
+    for (const TruthFilter& filter : kFilters) {
         Counts sum;
         std::unique_ptr<Drawn> drawn;
         std::string scene;
@@ -188,7 +188,7 @@ TEST_P(RayTruth, PicturesShowTheVisibility) {
     RendererDesc desc = smallDesc(120, 68);
     desc.frame.filters = {Filter::Pcf};
     desc.frame.shadows.pcfRadius = 3;
-    Renderer renderer(device(), view.scene, desc);
+    Renderer renderer(device(), view.scene, desc, pipelinesOf(device()));
     const HdrPicture unshadowed = draw(renderer, view.camera, ShadowMode::Off).linear;
     const HdrPicture picture = draw(renderer, view.camera, ShadowMode::Deferred).linear;
     const std::vector<float> visibility = renderer.readVisibility(0);

@@ -21,7 +21,7 @@ struct Verified {
 };
 
 Verified verified(const Device& device, const View3d& view, const RendererDesc& desc) {
-    Renderer renderer(device, view.scene, desc);
+    Renderer renderer(device, view.scene, desc, pipelinesOf(device));
     Verified out;
     out.picture = draw(renderer, view.camera, ShadowMode::Deferred).linear;
     const Pose pose = poseAt(view.scene, 0.0);
@@ -201,7 +201,7 @@ TEST_P(Verify, VisibilityIsTheSameWithOverflow) {
     RendererDesc desc = smallDesc(160, 90);
     desc.frame.filters = {Filter::Pcf};
     const auto allOf = [&](const RendererDesc& d) {
-        Renderer renderer(device(), view.scene, d);
+        Renderer renderer(device(), view.scene, d, pipelinesOf(device()));
         renderer.renderFrame(view.camera, ShadowMode::Deferred);
         std::vector<float> all;
         for (std::uint32_t i = 0; i < view.scene.lights.size(); ++i)
@@ -214,7 +214,7 @@ TEST_P(Verify, VisibilityIsTheSameWithOverflow) {
     EXPECT_EQ(roomy, allOf(desc));
     EXPECT_GT(std::ranges::count(roomy, 1.0f), 1000);
     EXPECT_GT(std::ranges::count(roomy, 0.0f), 1000);
-    Renderer renderer(device(), view.scene, desc);
+    Renderer renderer(device(), view.scene, desc, pipelinesOf(device()));
     renderer.renderFrame(view.camera, ShadowMode::Deferred);
     const std::vector<float> none = renderer.readVisibility(1000);
     EXPECT_EQ(std::ranges::count(none, -1.0f), std::ssize(none)) << "there is no such light";

@@ -6,6 +6,9 @@
 namespace gnomon::house {
 namespace {
 
+// What a buffer or an image needs, whatever its size: large enough for the little that is written without a frame.
+constexpr VkDeviceSize kBytesOfEverything = 1u << 16;
+
 FakeVulkan* current = nullptr;  // the driver's functions carry no pointer of ours
 
 template <typename Handle>
@@ -53,7 +56,47 @@ VKAPI_ATTR void VKAPI_CALL getProperties2(VkPhysicalDevice, VkPhysicalDeviceProp
 
 VKAPI_ATTR void VKAPI_CALL getMemory(VkPhysicalDevice, VkPhysicalDeviceMemoryProperties* out) {
     *out = {};
+    out->memoryTypeCount = out->memoryHeapCount = 1;
+    out->memoryTypes[0].propertyFlags = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                        VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
 }
+
+template <typename Handle>
+VKAPI_ATTR void VKAPI_CALL getRequirements(VkDevice, Handle, VkMemoryRequirements* out) {
+    *out = {.size = kBytesOfEverything, .alignment = 16, .memoryTypeBits = 1};
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL allocateMemory(VkDevice, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks*,
+                                              VkDeviceMemory* out) {
+    const VkResult result = make(out);
+    if (result == VK_SUCCESS) current->memory[*out].resize(info->allocationSize);
+    return result;
+}
+
+VKAPI_ATTR void VKAPI_CALL freeMemory(VkDevice device, VkDeviceMemory memory, const VkAllocationCallbacks* callbacks) {
+    destroy(device, memory, callbacks);
+    current->memory.erase(memory);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL mapMemory(VkDevice, VkDeviceMemory memory, VkDeviceSize, VkDeviceSize, VkMemoryMapFlags,
+                                         void** out) {
+    *out = current->memory.at(memory).data();
+    return VK_SUCCESS;
+}
+
+template <typename Handle>
+VKAPI_ATTR VkResult VKAPI_CALL bindMemory(VkDevice, Handle, VkDeviceMemory, VkDeviceSize) {
+    return VK_SUCCESS;
+}
+
+// Sets go with their pool.
+VKAPI_ATTR VkResult VKAPI_CALL allocateSets(VkDevice, const VkDescriptorSetAllocateInfo* info, VkDescriptorSet* out) {
+    for (std::uint32_t i = 0; i < info->descriptorSetCount; ++i) out[i] = handleOf<VkDescriptorSet>(i + 1);
+    return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL updateSets(VkDevice, std::uint32_t, const VkWriteDescriptorSet*, std::uint32_t,
+                                      const VkCopyDescriptorSet*) {}
 
 VKAPI_ATTR void VKAPI_CALL getFamilies(VkPhysicalDevice, std::uint32_t* count, VkQueueFamilyProperties* out) {
     *count = 1;
@@ -109,7 +152,7 @@ VKAPI_ATTR VkResult VKAPI_CALL createComputePipelines(VkDevice, VkPipelineCache,
     return VK_SUCCESS;
 }
 
-// Stands for every function that creating a context has no reason to call.
+// Stands for every function that creating contexts and views has no reason to call.
 VKAPI_ATTR void VKAPI_CALL neverCalled() {
     std::abort();
 }
@@ -145,6 +188,23 @@ PFN_vkVoidFunction lookUp(const char* name) {
         {"vkDestroyQueryPool", as(destroy<VkQueryPool>)},
         {"vkDestroySampler", as(destroy<VkSampler>)},
         {"vkDestroyShaderModule", as(destroy<VkShaderModule>)},
+        {"vkCreateBuffer", as(create<VkBufferCreateInfo, VkBuffer>)},
+        {"vkDestroyBuffer", as(destroy<VkBuffer>)},
+        {"vkGetBufferMemoryRequirements", as(getRequirements<VkBuffer>)},
+        {"vkBindBufferMemory", as(bindMemory<VkBuffer>)},
+        {"vkCreateImage", as(create<VkImageCreateInfo, VkImage>)},
+        {"vkDestroyImage", as(destroy<VkImage>)},
+        {"vkGetImageMemoryRequirements", as(getRequirements<VkImage>)},
+        {"vkBindImageMemory", as(bindMemory<VkImage>)},
+        {"vkCreateImageView", as(create<VkImageViewCreateInfo, VkImageView>)},
+        {"vkDestroyImageView", as(destroy<VkImageView>)},
+        {"vkAllocateMemory", as(allocateMemory)},
+        {"vkFreeMemory", as(freeMemory)},
+        {"vkMapMemory", as(mapMemory)},
+        {"vkCreateDescriptorPool", as(create<VkDescriptorPoolCreateInfo, VkDescriptorPool>)},
+        {"vkDestroyDescriptorPool", as(destroy<VkDescriptorPool>)},
+        {"vkAllocateDescriptorSets", as(allocateSets)},
+        {"vkUpdateDescriptorSets", as(updateSets)},
     };
     for (const auto& entry : known) {
         if (std::strcmp(entry.name, name) == 0) return entry.function;

@@ -4,6 +4,7 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -54,7 +55,8 @@ public:
     std::vector<SetLayout> setLayouts;
     std::map<VkShaderModule, std::size_t> modules;  // bytes of all that were made
     std::vector<Pipeline> pipelines;
-    std::uint32_t made = 0, destroyed = 0;
+    std::map<VkDeviceMemory, std::vector<std::byte>> memory;  // all that was allocated and not freed
+    std::uint32_t made = 0, destroyed = 0;                    // memory included
     std::uint32_t callsWithoutDevice = 0;  // with a null VkDevice: a real driver crashes
 
     [[nodiscard]] const SetLayout* find(VkDescriptorSetLayout handle) const;

@@ -115,7 +115,7 @@ void expectAt(const Pose& pose, std::size_t deformed, std::size_t vertex, const 
 }  // namespace
 
 TEST(SceneMotion, SkinsTargetsAndAnimationsMove) {
-    const Scene scene = loaded({});
+    const Scene scene = loaded(Parts{});
     ASSERT_EQ(scene.skins.size(), 1u);
     ASSERT_EQ(scene.animations.size(), 1u);
     EXPECT_EQ(scene.animations[0].name, "walk");

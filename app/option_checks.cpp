@@ -1,0 +1,28 @@
+#include "app/option_checks.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <string>
+
+namespace gnomon::app {
+
+const CLI::Validator& fileName() {
+    static const CLI::Validator validator(
+        [](const std::string& name) { return name.empty() ? "give a file name" : ""; }, "FILE");
+    return validator;
+}
+
+CLI::Validator numberWithin(double low, double high) {
+    const std::string range = fmt::format("FLOAT in [{:g} - {:g}]", low, high);
+    return {[low, high](const std::string& text) {
+                double value = 0.0;
+                const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+                const bool good =
+                    error == std::errc() && end == text.data() + text.size() && low <= value && value <= high;
+                return good ? std::string() : fmt::format("'{}' is no number from {:g} to {:g}", text, low, high);
+            },
+            range};
+}
+
+}  // namespace gnomon::app

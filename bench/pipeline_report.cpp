@@ -23,6 +23,7 @@
 #include "gpu_interface/numbers.h"
 #include "renderer/gpu/device.h"
 #include "renderer/lighting/lighting_pipelines.h"
+#include "renderer/shared_pipelines.h"
 
 namespace gnomon {
 namespace {
@@ -143,13 +144,9 @@ struct Row {
 };
 
 std::unique_ptr<Context> makeContext(const Device& device, std::uint32_t lanes) {
-    const std::uint32_t family = device.queueFamily();
-    ContextDesc desc;
-    desc.instance = device.instance().handle();
-    desc.physicalDevice = device.physical();
-    desc.device = device.handle();
+    ContextDesc desc = renderer::contextDescOf(device);
     desc.getInstanceProcAddr = instanceFunction;
-    desc.queueFamilies = {&family, 1};
+    desc.pipelineCache = VK_NULL_HANDLE;  // every pipeline is to be compiled
     desc.subgroupSize = lanes;
     desc.maxShadowAtlases = 1;  // as the reference renderer has
     std::unique_ptr<Context> context;

@@ -8,23 +8,27 @@ namespace gnomon::renderer {
 namespace {
 
 std::unique_ptr<Context> makeContext(const Device& device, std::uint32_t subgroupSize) {
-    const std::uint32_t family = device.queueFamily();
-    ContextDesc c;
-    c.instance = device.instance().handle();
-    c.physicalDevice = device.physical();
-    c.device = device.handle();
-    c.getInstanceProcAddr = vkGetInstanceProcAddr;
-    c.pipelineCache = device.pipelineCache();
-    c.queueFamilies = std::span(&family, 1);
-    c.debugLabels = device.instance().debugLabels();
-    c.subgroupSize = subgroupSize;
-    c.maxShadowAtlases = 1;
+    ContextDesc desc = contextDescOf(device);
+    desc.subgroupSize = subgroupSize;
+    desc.maxShadowAtlases = 1;
     std::unique_ptr<Context> context;
-    require(Context::create(c, context));
+    require(Context::create(desc, context));
     return context;
 }
 
 }  // namespace
+
+ContextDesc contextDescOf(const Device& device) {
+    ContextDesc desc;
+    desc.instance = device.instance().handle();
+    desc.physicalDevice = device.physical();
+    desc.device = device.handle();
+    desc.getInstanceProcAddr = vkGetInstanceProcAddr;
+    desc.pipelineCache = device.pipelineCache();
+    desc.queueFamilies = std::span(&device.info().queueFamily, 1);
+    desc.debugLabels = device.instance().debugLabels();
+    return desc;
+}
 
 SharedPipelines::SharedPipelines(const Device& device, std::uint32_t subgroupSize)
     : device_(device),

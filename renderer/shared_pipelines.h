@@ -11,6 +11,9 @@
 
 namespace gnomon::renderer {
 
+/// For a context of the library on this device, which must outlive the description.
+ContextDesc contextDescOf(const Device& device);
+
 /// The library's context and the pipelines that shade. Renderers that share them make none twice. Not thread safe: one
 /// thread at a time may use such renderers.
 class SharedPipelines {
@@ -21,9 +24,7 @@ public:
     [[nodiscard]] const Device& device() const { return device_; }
     [[nodiscard]] std::uint32_t wantedSubgroupSize() const { return wantedSubgroupSize_; }
     [[nodiscard]] Context& context() { return *context_; }
-    [[nodiscard]] const Context& context() const { return *context_; }
     [[nodiscard]] LightingPipelines& lighting() { return lighting_; }
-    [[nodiscard]] const LightingPipelines& lighting() const { return lighting_; }
     [[nodiscard]] LightVisibilityPipelines& lightVisibility() { return lightVisibility_; }
 
 private:

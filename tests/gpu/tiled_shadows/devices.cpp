@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <optional>
 
+#include "renderer/shared_pipelines.h"
+
 #ifdef __SANITIZE_ADDRESS__
 /// Lavapipe (Mesa 22.3) never frees the shaders that it compiles for a uniform's value; and the instance is kept to the
 /// end (see Teardown), with what the validation layer holds for it.
@@ -95,22 +97,13 @@ std::string deviceName(const ::testing::TestParamInfo<std::size_t>& info) {
 }
 
 TestDevice::TestDevice(const renderer::VulkanInstance& instance, const renderer::DeviceInfo& info)
-    : instance_(instance), device_(std::make_unique<renderer::Device>(instance, info)) {
+    : device_(std::make_unique<renderer::Device>(instance, info)) {
     std::printf("device: %s, %s, subgroups of %u (%u to %u)\n", info.name.c_str(), info.driver.c_str(),
                 info.subgroupSize, info.minSubgroupSize, info.maxSubgroupSize);
 }
 
 ContextDesc TestDevice::contextDesc(const ContextSetup& setup) const {
-    ContextDesc desc;
-    desc.instance = instance_.handle();
-    desc.physicalDevice = device_->physical();
-    desc.device = device_->handle();
-    desc.getInstanceProcAddr = vkGetInstanceProcAddr;
-    desc.pipelineCache = device_->pipelineCache();
-    static thread_local std::uint32_t family = 0;  // must outlive the call of Context::create
-    family = device_->queueFamily();
-    desc.queueFamilies = std::span(&family, 1);
-    desc.debugLabels = instance_.debugLabels();
+    ContextDesc desc = renderer::contextDescOf(*device_);
     desc.subgroupSize = setup.subgroupSize;
     desc.maxShadowAtlases = setup.maxShadowAtlases;
     if (setup.hostProvider) desc.generateShadowsSpirv = kHostProviderSpirv;

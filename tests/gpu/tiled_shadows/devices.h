@@ -31,7 +31,6 @@ public:
     [[nodiscard]] ContextDesc contextDesc(const ContextSetup& setup) const;
 
 private:
-    const renderer::VulkanInstance& instance_;
     std::unique_ptr<renderer::Device> device_;  // outlives the contexts
     std::map<std::string, std::unique_ptr<Context>> contexts_;
 };

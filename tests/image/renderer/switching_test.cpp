@@ -1,6 +1,7 @@
 // Settings that change in a running renderer: each picture is the one of a fresh renderer, to the bit, and what is made
 // for it is told: no view, and nothing at all the second time.
 #include "image/renderer/harness.h"
+#include "renderer/gpu/error.h"
 
 namespace gnomon::renderer::image_test {
 namespace {
@@ -119,6 +120,25 @@ TEST_P(Switching, PreparedFramesMakeNoPipelines) {
         EXPECT_EQ(renderer.counts().libraryPipelines, prepared.libraryPipelines);
         EXPECT_EQ(renderer.counts().lightingPipelines, prepared.lightingPipelines);
     }
+}
+
+// A second renderer on the same pipelines makes none, and draws what the first one drew.
+TEST_P(Switching, SharedPipelinesAreMadeOnce) {
+    const View3d view = builtin("boxes");
+    RendererDesc desc = smallDesc(64, 40);
+    desc.frame.filters = {Filter::Hard};
+    const auto shared = std::make_shared<SharedPipelines>(device());
+    Renderer first(device(), view.scene, desc, shared);
+    const HdrPicture picture = draw(first, view.camera, ShadowMode::Deferred).linear;
+    const RendererCounts made = first.counts();
+    EXPECT_GT(made.libraryPipelines, 0u);
+    EXPECT_GT(made.lightingPipelines, 0u);
+    Renderer second(device(), view.scene, desc, shared);
+    EXPECT_TRUE(draw(second, view.camera, ShadowMode::Deferred).linear.rgba == picture.rgba);
+    EXPECT_EQ(second.counts().libraryPipelines, made.libraryPipelines);
+    EXPECT_EQ(second.counts().lightingPipelines, made.lightingPipelines);
+    desc.subgroupSize = device().info().subgroupSize;
+    EXPECT_THROW(Renderer(device(), view.scene, desc, shared), GpuError) << "pipelines of another wish";
 }
 
 // Two ways of drawing shadowmaps, each with an atlas of its own: going to and fro draws nothing again.

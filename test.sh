@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds everything with AddressSanitizer and UndefinedBehaviorSanitizer and runs all tests on every Vulkan device found.
-# The tests that wait for devices are built and run without sanitizers.
+# Those that take long are built and run without sanitizers, but with the standard library's assertions.
 #   ./test.sh          what every change must pass
 #   ./test.sh --full   the long tests too, and all of them with sanitizers
 # Sets a fresh Debian or Ubuntu machine up first.
@@ -24,10 +24,10 @@ scripts/install_dependencies.sh --test
 # build PRESET TARGET...
 build() { cmake --preset "$1" && cmake --build --preset "$1" --parallel "$(nproc)" --target "${@:2}"; }
 step "Building with sanitizers (some minutes the first time; log in build/test.log)"
-quietly build/test.log build sanitize all ${full:+driver_tests}
+quietly build/test.log build sanitize all ${full:+long_tests}
 if [ -z "$full" ]; then
-    step "Building the tests of devices (log in build/test.log)"
-    quietly build/test.log build check driver_tests
+    step "Building the long tests without sanitizers (log in build/test.log)"
+    quietly build/test.log build check long_tests
 fi
 
 # SwiftShader beside the installed drivers.
@@ -62,8 +62,8 @@ if [ -n "$full" ]; then
     run_tests sanitize
 else
     step "Testing with sanitizers"
-    run_tests sanitize --label-exclude drivers
-    step "Testing devices"
-    run_tests check --label-regex drivers
+    run_tests sanitize --label-exclude long
+    step "Testing what takes long"
+    run_tests check --label-regex long
 fi
 step "All tests are done"

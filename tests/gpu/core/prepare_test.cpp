@@ -20,18 +20,13 @@ Shot shotOf(const ShadowSettings& settings) {
     return shot;
 }
 
-// Settings that differ, with pipelines in common. The simple filters: soft shadows take software devices long to
-// compile.
+// Settings that differ, with pipelines in common. Hard shadows: other filters take software devices long to compile.
 std::vector<ShadowSettings> someSettings() {
-    std::vector<ShadowSettings> out(5);
-    out[0].filters = only(Filter::Hard);
-    out[1].filters = only(Filter::Pcf);
-    out[2].filters = only(Filter::Pcf);
-    out[2].pcfRadius = 2;
-    out[3].filters = only(Filter::Hard);
+    std::vector<ShadowSettings> out(4, ShadowSettings{.filters = only(Filter::Hard)});
+    out[1].visibilityBits = 4;
+    out[2].depthBias = DepthBias::Unbiased;
     out[3].visibilityBits = 4;
-    out[4].filters = only(Filter::Hard);
-    out[4].depthBias = DepthBias::Unbiased;
+    out[3].depthBias = DepthBias::Unbiased;
     return out;
 }
 
@@ -138,7 +133,7 @@ TEST_F(PrepareTest, ThreadsMayPrepareWhileFramesAreRecorded) {
         std::uint64_t last = 0;
         std::uint32_t recorded = 0;
         while (done < 2 || recorded < 6) {
-            last = frames.run(*view, shotOf(settings[recorded % 2 == 0 ? 0 : 4]));
+            last = frames.run(*view, shotOf(settings[recorded % 2 == 0 ? 0 : 2]));
             ++recorded;
         }
         forth.join();

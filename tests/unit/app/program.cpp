@@ -30,4 +30,32 @@ bool isOneSentence(const std::string& text) {
            text.find(". ") == std::string::npos;
 }
 
+void Program::SetUp() {
+    const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              (std::string("gnomon_") + test->test_suite_name() + "_" + test->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+}
+
+void Program::TearDown() {
+    std::filesystem::remove_all(folder_);
+}
+
+void Program::expectGood(const std::string& arguments) const {
+    const Outcome result = run(arguments);
+    EXPECT_EQ(result.exitCode, 0) << arguments << "\n" << result.out << result.err;
+}
+
+void Program::expectRefused(const std::string& arguments, int exitCode) const {
+    const Outcome result = run(arguments);
+    EXPECT_EQ(result.exitCode, exitCode) << arguments << "\n" << result.err;
+    EXPECT_TRUE(isOneSentence(result.err)) << arguments << "\n" << result.err;
+    EXPECT_EQ(result.out, "") << arguments;
+}
+
+nlohmann::json Program::readJson(const char* name) const {
+    return nlohmann::json::parse(std::ifstream(folder_ / name));
+}
+
 }  // namespace gnomon::app

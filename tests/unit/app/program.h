@@ -1,7 +1,10 @@
 #pragma once
 // Runs the built program as its users do.
 
+#include <gtest/gtest.h>
+
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 namespace gnomon::app {
@@ -16,5 +19,20 @@ Outcome runProgram(const std::filesystem::path& folder, const std::string& argum
 
 /// True for one line that starts with "gnomon: " and ends in one full stop.
 bool isOneSentence(const std::string& text);
+
+/// Each test runs the program in a folder of its own.
+class Program : public testing::Test {
+protected:
+    void SetUp() override;
+    void TearDown() override;
+
+    Outcome run(const std::string& arguments) const { return runProgram(folder_, arguments); }
+    void expectGood(const std::string& arguments) const;
+    /// One sentence on stderr, nothing on stdout.
+    void expectRefused(const std::string& arguments, int exitCode) const;
+    nlohmann::json readJson(const char* name) const;
+
+    std::filesystem::path folder_;
+};
 
 }  // namespace gnomon::app

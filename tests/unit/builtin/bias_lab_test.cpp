@@ -17,7 +17,11 @@ namespace {
 
 class BiasLab : public testing::Test {
 protected:
-    Scene scene = makeBuiltinScene("bias-lab").value();
+    static const Scene& made() {
+        static const Scene once = makeBuiltinScene("bias-lab").value();
+        return once;
+    }
+    const Scene& scene = made();
 
     const Primitive& primitive(const std::string& mesh, std::size_t index = 0) {
         const auto found = std::find_if(scene.meshes.begin(), scene.meshes.end(),

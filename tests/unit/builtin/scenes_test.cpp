@@ -5,7 +5,9 @@
 #include "scene/builtin/triangle_grid.h"
 
 #include <gtest/gtest.h>
+
 #include <cmath>
+#include <map>
 
 namespace gnomon::renderer {
 namespace {
@@ -39,9 +41,16 @@ std::size_t triangles(const Scene& scene) {
     return count;
 }
 
+/// Made once: the large ones take seconds.
+const Scene& sceneOf(const std::string& name) {
+    static std::map<std::string, Scene> made;
+    const auto found = made.find(name);
+    return found != made.end() ? found->second : made.emplace(name, makeBuiltinScene(name).value()).first->second;
+}
+
 class BuiltinScene : public testing::TestWithParam<std::string> {
 protected:
-    Scene scene = makeBuiltinScene(GetParam()).value();
+    const Scene& scene = sceneOf(GetParam());
 };
 
 TEST_P(BuiltinScene, IsTheSameEachTime) {
@@ -149,7 +158,7 @@ bool isCourtyard(const std::string& name) {
 TEST(BuiltinScenes, CourtyardKeepsItsSize) {
     for (const std::string& name : names()) {
         if (!isCourtyard(name)) continue;
-        const Scene scene = makeBuiltinScene(name).value();
+        const Scene& scene = sceneOf(name);
         EXPECT_GE(triangles(scene), 200'000u);
         EXPECT_LE(triangles(scene), 400'000u);
         int points = 0, spots = 0, directional = 0;
@@ -168,7 +177,7 @@ TEST(BuiltinScenes, CourtyardKeepsItsSize) {
 
 // What the bench's name promises; the library itself counts 3.02 there.
 TEST(BuiltinScenes, TheBenchHasThreeShadowedLightsPerTile) {
-    const Scene scene = makeBuiltinScene("courtyard-bench").value();
+    const Scene& scene = sceneOf("courtyard-bench");
     const TileDensity picture{3.0f, scene.cameras.front(), 3840, 2160};
     EXPECT_NEAR(TileSamples(TriangleGrid(scene), picture).meanShadowed(scene.lights), 3.0f, 0.2f);
 }
@@ -176,7 +185,7 @@ TEST(BuiltinScenes, TheBenchHasThreeShadowedLightsPerTile) {
 TEST(BuiltinScenes, SmallScenesAreSmall) {
     for (const std::string& name : names()) {
         if (isCourtyard(name) || name == "bias-lab") continue;
-        EXPECT_LE(triangles(makeBuiltinScene(name).value()), 15'000u) << name;
+        EXPECT_LE(triangles(sceneOf(name)), 15'000u) << name;
     }
 }
 
@@ -193,7 +202,7 @@ TEST(BuiltinScenes, ColumnsFollowSeedAndLightCount) {
 // From cameras and lights no ray may meet the inside of a single-sided surface: nothing is open, nothing inside out.
 TEST(BuiltinScenes, NoSurfaceIsSeenFromBehind) {
     for (const std::string& name : names()) {
-        const Scene scene = makeBuiltinScene(name).value();
+        const Scene& scene = sceneOf(name);
         const TriangleGrid grid(scene);
         std::vector<glm::vec3> eyes;
         for (const SceneCamera& camera : scene.cameras) eyes.emplace_back(camera.worldFromCamera[3]);

@@ -1,0 +1,91 @@
+// What the program draws: time, soft shadows, small pools, validation.
+
+#include <bit>
+#include <fstream>
+
+#include "unit/app/program.h"
+
+namespace gnomon::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Rendering : public Program {};
+
+// A triangle that slides three metres to the right within a second; `reach` in place of the three.
+std::string slidingTriangle(float reach) {
+    const float numbers[17] = {-1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 1, 0, 0, 0, reach, 0, 0};
+    std::string bytes;  // percent-encoded
+    for (float number : numbers)
+        for (std::uint32_t bits = std::bit_cast<std::uint32_t>(number), i = 0; i < 4; ++i, bits >>= 8) {
+            bytes += '%';
+            for (std::uint32_t digit : {bits >> 4 & 15u, bits & 15u}) bytes += "0123456789abcdef"[digit];
+        }
+    return R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],)"
+           R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+           R"("buffers":[{"byteLength":68,"uri":"data:application/octet-stream,)" +
+           bytes +
+           R"("}],"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":8},)"
+           R"({"buffer":0,"byteOffset":44,"byteLength":24}],"accessors":[)"
+           R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
+           R"({"bufferView":1,"componentType":5126,"count":2,"type":"SCALAR"},)"
+           R"({"bufferView":2,"componentType":5126,"count":2,"type":"VEC3"}],)"
+           R"("animations":[{"name":"slide","samplers":[{"input":1,"output":2}],)"
+           R"("channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}]})";
+}
+
+TEST_F(Rendering, TimePasses) {
+    std::ofstream(folder_ / "slide.gltf") << slidingTriangle(3.0f);
+    const std::string render = "render slide.gltf --size 64x36 --exposure 0 ";
+    expectGood(render + "-o start.png");
+    expectGood(render + "--time 0.5 -o middle.png");
+    expectGood(render + "--time 2 -o looped.png");
+    expectGood(render + "--time 0.5 --animation none -o still.png");
+    expectGood(render + "--time 0.5 --animation slide -o named.png");
+    expectGood(render + "--frames 3 --fps 4 --sequence -o film.png");
+    EXPECT_EQ(run("compare start.png middle.png").exitCode, 1);
+    expectGood("compare start.png looped.png");
+    expectGood("compare start.png still.png");
+    expectGood("compare middle.png named.png");
+    expectGood("compare start.png film_0000.png");
+    expectGood("compare middle.png film_0002.png");
+    EXPECT_FALSE(fs::exists(folder_ / "film.png"));
+    EXPECT_FALSE(fs::exists(folder_ / "film_0003.png"));
+    expectGood("bench slide.gltf --size 64x36 --warmup 0 --frames 2 --fps 30 --time 0.1");
+    std::ofstream(folder_ / "thrown.gltf") << slidingTriangle(9.0e14f);
+    expectGood("render thrown.gltf --size 64x36 --time 0.9");
+    std::ofstream(folder_ / "slide.gltf") << slidingTriangle(2.0e15f);
+    expectRefused("render slide.gltf --size 64x36 --time 0.9 --quiet", 2);  // a value beyond 1e15
+}
+
+TEST_F(Rendering, SoftShadowsHaveTheirOptions) {
+    const std::string render = "render boxes --size 96x54 --exposure 3 ";
+    expectGood(render + "--filter pcss --pcss-taps medium -o soft.png");
+    expectGood(render + "--pcss-taps 16,24 --no-shadow-bounds -o searched.png");
+    expectGood("compare soft.png searched.png");
+    expectGood(render + "--filter hard -o hard.png");
+    expectGood(render + "--pattern-per-frame --frames 2 -o turned.png");
+    for (const char* other : {"hard.png", "turned.png"})
+        EXPECT_EQ(run(std::string("compare soft.png ") + other).exitCode, 1) << other;
+    expectGood(render + "--visibility-bits 4 -o four.png");
+    expectGood("compare soft.png four.png --tolerance 15");
+    EXPECT_EQ(run("compare soft.png four.png --tolerance 1").exitCode, 1);
+}
+
+TEST_F(Rendering, FramesAreCleanUnderValidation) {
+    for (const char* shadows : {"deferred", "inline", "off"})
+        expectGood(std::string("render boxes --size 97x61 --frames 3 --validate --shadows ") + shadows);
+}
+
+TEST_F(Rendering, PoolsOfOneLoseNoLight) {
+    expectGood("render boxes --size 160x90 -o all.png");
+    expectGood("render boxes --size 160x90 -o one.png --stats one.json --list-entries 1 --visibility-slots 1");
+    expectGood("render boxes --size 160x90 -o slot.png --stats slot.json --visibility-slots 1");
+    EXPECT_GT(readJson("one.json")["counters"]["listOverflowTiles"], 0);
+    EXPECT_GT(readJson("slot.json")["counters"]["slotOverflowEntries"], 0);
+    expectGood("compare all.png one.png --tolerance 1");
+    expectGood("compare all.png slot.png --tolerance 1");
+}
+
+}  // namespace
+}  // namespace gnomon::app

@@ -36,9 +36,7 @@ inline constexpr float kUpperArmLength = 0.27f, kForearmLength = 0.25f;
 inline constexpr float kHipHeight = 0.96f;
 
 /// Rotation about an axis of any length, radians.
-inline glm::quat about(const glm::vec3& axis, float angle) {
-    return glm::angleAxis(angle, glm::normalize(axis));
-}
+glm::quat about(const glm::vec3& axis, float angle);
 
 /// Joint in its parent's frame, standing with hanging arms.
 glm::vec3 bindTranslation(std::uint32_t joint);

@@ -9,6 +9,11 @@
 #include "scene/builtin/numbers.h"
 
 namespace gnomon::renderer::courtyard {
+
+glm::quat about(const glm::vec3& axis, float angle) {
+    return glm::angleAxis(angle, glm::normalize(axis));
+}
+
 namespace {
 
 const glm::vec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);

@@ -430,7 +430,6 @@ TEST(MinimalHost, DrawsTheExpectedPictureOnEveryDevice) {
         const Difference d = compare(run.picture);
         EXPECT_LE(d.most, kTolerance) << d.above << " pixels differ, most of all (" << d.x << ", " << d.y << ")";
 
-        EXPECT_TRUE(runProgram(device).picture == run.picture) << "two runs differ";
         const Outcome overflow = runProgram(device, "600");  // too small: most tiles go to the second lighting pipeline
         EXPECT_EQ(overflow.exitCode, 0);
         EXPECT_EQ(overflow.output.find("evaluated: 0 tiles"), std::string::npos);

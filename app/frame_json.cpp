@@ -1,6 +1,10 @@
 #include "app/frame_json.h"
 
+#include <fmt/format.h>
+
+#include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -8,6 +12,7 @@
 #include "app/frame_table.h"
 #include "app/settings_table.h"
 #include "picture/files.h"
+#include "renderer/frame/lights.h"
 
 namespace gnomon::app {
 namespace {
@@ -18,6 +23,44 @@ Json lightsOf(const PrepareReport& lights) {
             {"dropped", lights.dropped},
             {"directional", lights.directional},
             {"casting", lights.casting}};
+}
+
+const char* nameOf(renderer::LightKind kind) {
+    switch (kind) {
+        case renderer::LightKind::Point:
+            return "point";
+        case renderer::LightKind::Spot:
+            return "spot";
+        case renderer::LightKind::Directional:
+            return "directional";
+    }
+    return "";
+}
+
+// A float's own shortest digits: 0.002, where the nearest double says 0.0020000000949949026.
+double shortest(float value) {
+    return std::strtod(fmt::format("{}", value).c_str(), nullptr);
+}
+
+// What each light was given or, where nobody gave it, got.
+Json sceneLightsOf(const Session& session, const FrameResult& result) {
+    const std::vector<renderer::SceneLight>& lights = session.scene().lights;
+    Json out = Json::array();
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const renderer::SceneLight& light = lights[i];
+        const bool local = light.kind != renderer::LightKind::Directional;
+        const std::optional<float> stated = statedBias(light, session.rendererDesc().frame);
+        Json row = {{"name", light.name}, {"kind", nameOf(light.kind)}};
+        if (local) row.update({{"rangeMetres", shortest(light.rangeMetres)}, {"rangeGuessed", light.rangeIsGuessed}});
+        row[local ? "sourceRadiusMetres" : "sourceRadiusRadians"] = shortest(light.sourceRadius);
+        row["sourceRadiusGuessed"] = light.sourceIsGuessed;
+        row["biasMetres"] = shortest(stated.value_or(renderer::kBiasMetres));
+        row["biasStated"] = stated.has_value();
+        if (local && !stated) row["biasAtMostPerMetre"] = shortest(renderer::kMostBias);
+        for (const float bias : result.cascadeBiases.at(i)) row["cascadeBiasMetres"].push_back(shortest(bias));
+        out.push_back(std::move(row));
+    }
+    return out;
 }
 
 Json passesOf(const std::vector<TimelineRow>& passes) {
@@ -86,6 +129,7 @@ Json describe(const Session& session, const FrameResult& result) {
     out["shadows"] = result.shadows;
     out["frames"] = result.frames;
     out["lights"] = lightsOf(report.statistics.lights);
+    out["sceneLights"] = sceneLightsOf(session, result);
     out["passes"] = passesOf(report.passes);
     out["drawingMs"] = totals.drawing;
     out["computeMs"] = totals.compute;
@@ -102,6 +146,7 @@ Json describe(const Session& session, const FrameResult& result) {
                           {"lightsShrunk", report.shadowLightsShrunk},
                           {"lightsDropped", report.shadowLightsDropped}};
     out["exposureEv100"] = result.exposureEv100;
+    out["clippedPixels"] = result.clippedPixels;
     out["hash"] = result.hash;
     return out;
 }

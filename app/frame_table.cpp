@@ -129,6 +129,9 @@ void printFrame(const Session& session, const FrameResult& result) {
     printMemory(result);
     printCounters(result);
     printAdvice(result);
+    if (result.clippedPixels != 0)
+        fmt::print("{} pixels are brighter than {:g}, the most that the picture holds: they are clipped.\n",
+                   result.clippedPixels, renderer::kBrightest);
     if (!result.hash.empty()) fmt::print("Picture {}, exposed for EV100 {:.2f}.\n", result.hash, result.exposureEv100);
 }
 

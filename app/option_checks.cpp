@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <filesystem>
 #include <string>
 
 namespace gnomon::app {
@@ -11,6 +12,13 @@ const CLI::Validator& fileName() {
     static const CLI::Validator validator(
         [](const std::string& name) { return name.empty() ? "give a file name" : ""; }, "FILE");
     return validator;
+}
+
+std::string extensionOf(const std::string& file) {
+    std::string extension = std::filesystem::path(file).extension().string();
+    for (char& c : extension)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return extension;
 }
 
 CLI::Validator numberWithin(double low, double high) {

@@ -8,6 +8,9 @@ namespace gnomon::app {
 /// For options that name a file: an empty name is refused.
 const CLI::Validator& fileName();
 
+/// How the name of a file ends, in small letters: ".glb" of "Scene.GLB".
+std::string extensionOf(const std::string& file);
+
 /// As CLI::Range, which lets NaN pass.
 CLI::Validator numberWithin(double low, double high);
 

@@ -1,6 +1,7 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "app/outputs.h"
 #include "app/progress.h"
 #include "app/session.h"
+#include "renderer/frame/lights.h"
 
 namespace gnomon::app {
 namespace {
@@ -63,6 +65,13 @@ FrameResult renderFrames(renderer::Renderer& renderer, const Session& session, c
     result.shadows = options.shadows;
     result.frames = options.frames;
     result.report = renderer.report(last);
+    for (std::uint32_t i = 0; i < session.scene().lights.size(); ++i) {
+        const renderer::SceneLight& light = session.scene().lights[i];
+        std::vector<float>& biases = result.cascadeBiases.emplace_back();
+        if (light.kind != renderer::LightKind::Directional) continue;
+        const float bias = statedBias(light, renderer.settings()).value_or(renderer::kBiasMetres);
+        for (const ShadowView& view : renderer.shadowViews(i)) biases.push_back(std::min(bias, view.mostBias));
+    }
     result.memory = renderer.memory();
     result.library = renderer.libraryMemory();
     return result;
@@ -74,6 +83,7 @@ void writePictures(renderer::Renderer& renderer, const Session& session, const R
     if (!options.sequence) result.exposureEv100 = exposureOf(linear, session, options);
     const renderer::Picture picture = renderer::toneMap(linear, result.exposureEv100);
     result.hash = renderer::hashOf(picture);
+    result.clippedPixels = renderer::clippedPixels(linear);
     if (!options.png.empty() && !options.sequence) renderer::writePng(picture, options.png);
     if (!options.exr.empty()) renderer::writeExr(linear, options.exr);
 }
@@ -99,8 +109,8 @@ int render(const RenderOptions& options) {
     rendererDescOf(options.settings);  // refuses wrong settings before anything is started
     if (options.settings.unquantised && options.shadows != "inline")
         throw UsageError("--unquantised goes with --shadows inline alone.");
-    const std::string extension = std::filesystem::path(options.png).extension().string();
-    if (!extension.empty() && extension != ".png" && extension != ".PNG")
+    const std::string extension = extensionOf(options.png);
+    if (!extension.empty() && extension != ".png")
         throw UsageError(fmt::format("'{}' is no name for a PNG file: it must end in .png.", options.png));
     if (options.sequence && options.png.empty()) throw UsageError("--sequence needs -o NAME.png to name its files by.");
     std::vector<std::string> outputs = {options.exr, options.statistics};
@@ -131,6 +141,8 @@ void addRenderCommand(CLI::App& app, Work& chosen) {
         ->check(numberWithin(1e-3, 1e6))
         ->capture_default_str();
     command->add_flag("--sequence", options->sequence, "Write every frame, as NAME_0000.png and so on");
+    command->add_option("--light", options->settings.onlyLights,
+                        "Only this light of the scene shines, counted from 0; may be repeated");
     command->add_option("--exposure", options->exposure, "EV100; without it the scene's own, or from the picture");
     addSettings(*command, options->settings);
     command->callback([&chosen, options] { chosen = [options] { return render(*options); }; });

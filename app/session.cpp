@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "app/errors.h"
+#include "app/option_checks.h"
 #include "app/progress.h"
 #include "scene/builtin/builtin.h"
 #include "scene/load_gltf.h"
@@ -62,12 +63,20 @@ renderer::SceneCamera cameraOf(const Settings& settings, const Scene& scene) {
     return camera;
 }
 
+// The others stay, so that numbers and statistics name the same lights, but give no light.
+void turnOffOthers(Scene& scene, const std::vector<std::uint32_t>& only) {
+    if (only.empty()) return;
+    for (const std::uint32_t light : only) checkLight(light, scene);
+    for (std::uint32_t i = 0; i < scene.lights.size(); ++i)
+        if (std::ranges::find(only, i) == only.end()) scene.lights[i].intensity = 0.0f;
+}
+
 Scene loadScene(const Settings& settings, const renderer::RendererDesc& desc) {
     renderer::BuiltinOptions options;
     options.seed = settings.seed;
     options.lightCount = settings.lights;
     Scene scene;
-    const std::string extension = std::filesystem::path(settings.scene).extension().string();
+    const std::string extension = extensionOf(settings.scene);
     if (std::optional<Scene> builtin = renderer::makeBuiltinScene(settings.scene, options))
         scene = std::move(*builtin);
     else if (extension == ".gltf" || extension == ".glb")
@@ -87,7 +96,14 @@ Scene loadScene(const Settings& settings, const renderer::RendererDesc& desc) {
         // The columns have places of their own for their lights.
         renderer::scatterLights(scene, settings.lights, settings.seed);
     }
+    // Scenes of our own have the lights that they are meant to have.
+    if (!extension.empty()) renderer::lightIfDark(scene);
+    for (renderer::SceneLight& light : scene.lights)
+        if (light.kind != renderer::LightKind::Directional && !(light.sourceRadius > 0.0f))
+            light.sourceRadius = settings.sourceRadius;
     renderer::completeLights(scene);
+    turnOffOthers(scene, settings.onlyLights);
+    if (settings.ambient == "off") scene.skyColour = scene.groundColour = glm::vec3(0.0f);
     return scene;
 }
 
@@ -111,6 +127,12 @@ void checkReachable(const Scene& scene, const renderer::SceneCamera& camera) {
 }
 
 }  // namespace
+
+void checkLight(std::uint32_t light, const renderer::Scene& scene) {
+    if (light >= scene.lights.size())
+        throw UsageError(
+            fmt::format("There is no light #{}: the scene has {}, counted from 0.", light, scene.lights.size()));
+}
 
 Session::Session(const renderer::VulkanInstance& instance, const Settings& settings)
     : settings_(settings),

@@ -26,6 +26,9 @@ private:
     renderer::SceneCamera camera_;
 };
 
+/// Throws UsageError where the scene has no such light.
+void checkLight(std::uint32_t light, const renderer::Scene& scene);
+
 renderer::InstanceDesc instanceDescOf(const Settings& settings);
 
 /// The exit code of work under validation: to be asked after everything on the device is gone.

@@ -67,6 +67,16 @@ renderer::HardwareBias parseHardwareBias(const std::string& text) {
     return {values[0], values[1], values[2]};
 }
 
+float parseBiasMetres(const std::string& text) {
+    float value = 0.0f;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool good =
+        error == std::errc() && end == text.data() + text.size() && value >= 0.0f && value <= kMostBiasMetres;
+    if (!good)
+        throw UsageError(fmt::format("'{}' is no bias: give auto, or metres from 0 to {}.", text, kMostBiasMetres));
+    return value;
+}
+
 void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
     const std::size_t cross = text.find('x');
     if (cross != std::string::npos) {
@@ -151,11 +161,12 @@ renderer::FrameSettings frameSettingsOf(const Settings& s) {
     setBias(s.bias, f);
     if (!s.hardwareBias.empty()) f.drawing.bias = parseHardwareBias(s.hardwareBias);
     f.drawing.subsurfaceFronts = s.subsurfaceFronts;
-    f.biasMetres = s.biasMetres;
+    if (s.biasMetres != "auto") f.biasMetres = parseBiasMetres(s.biasMetres);
     f.subsurfaceBiasMetres = s.subsurfaceBiasMetres;
     f.readFaceNormals = s.faceNormals == "stored";
     f.deviceDepth = s.depth == "standard" ? DeviceDepth::StandardZ : DeviceDepth::ReversedZ;
     f.inlineVariant.quantises = !s.unquantised;
+    f.history = s.history == "on";
     return f;
 }
 

@@ -18,6 +18,7 @@ namespace gnomon::app {
 inline constexpr std::uint32_t kMostPixelsAcross = 16384;
 /// Tiles of a picture: the library counts list space in 32 bits, and any tile may have all lights of a view.
 inline constexpr std::uint32_t kMostTiles = 0xFFFFFFFFu / gpu::roundUpToEarlyWord(gpu::kMaxLightsPerView);
+inline constexpr float kMostBiasMetres = 1000.0f;
 inline constexpr std::uint32_t kMostLights = 100'000;
 inline constexpr std::uint32_t kFixedListEntriesPerTile = 32;  // with --reservation fixed
 
@@ -29,7 +30,10 @@ struct Settings {
     std::string animation = "default";
     std::uint32_t lights = 0;
     float lightDensity = 0.0f;  // 0: by area, whatever the picture
+    float sourceRadius = 0.0f;  // metres, of local lights that state none; 0: by what is nearest to each
     std::uint64_t seed = 1;
+    std::vector<std::uint32_t> onlyLights;  // empty: all; a command's own option
+    std::string ambient = "on";
     std::string filter = "pcss";
     std::uint32_t pcfRadius = 1;
     std::string taps = "medium";
@@ -38,12 +42,14 @@ struct Settings {
     std::uint32_t visibilityBits = 8;
     bool unquantised = false;
     std::string bias = "oriented";
-    std::string hardwareBias;  // empty: as `bias` has it
-    float biasMetres = 0.002f, subsurfaceBiasMetres = 0.02f;
+    std::string hardwareBias;         // empty: as `bias` has it
+    std::string biasMetres = "auto";  // or a number
+    float subsurfaceBiasMetres = 0.02f;
     bool subsurfaceFronts = false;
     std::string faceNormals = "stored";
     std::uint32_t atlas = 0;
     std::string depth = "reversed";
+    std::string history = "auto";  // "auto": bench has it, others have not
     std::uint32_t listEntries = 0, visibilitySlots = 0, mostListEntries = 0, mostVisibilitySlots = 0;
     std::string reservation = "accurate";
     std::string device;
@@ -67,6 +73,8 @@ void setBias(const std::string& name, renderer::FrameSettings& settings);
 void parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height);
 /// Presets of taps parted by slashes; throws UsageError otherwise.
 void parsePresets(const std::string& text, ShadowSettings& shadows);
+/// Metres; throws UsageError otherwise.
+float parseBiasMetres(const std::string& text);
 /// CONSTANT,SLOPE or CONSTANT,SLOPE,CLAMP; throws UsageError otherwise.
 renderer::HardwareBias parseHardwareBias(const std::string& text);
 /// Filters parted by commas; throws UsageError where one is none.

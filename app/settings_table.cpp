@@ -1,8 +1,8 @@
 #include "app/settings_table.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -47,6 +47,10 @@ void checkSize(const std::string& text) {
 void checkPresets(const std::string& text) {
     ShadowSettings unused;
     parsePresets(text, unused);
+}
+
+std::string checkBiasMetres(const std::string& text) {
+    return text == "auto" ? std::string() : checkedBy(parseBiasMetres)(text);
 }
 
 constexpr double kLeastDensity = 0.1, kMostDensity = 64.0;
@@ -103,6 +107,20 @@ std::vector<Setting> makeTable() {
          .needs = "--lights",
          .check = checkDensity,
          .range = fmt::format("0 (off), or {} to {}", kLeastDensity, kMostDensity)});
+    add({.group = kScene,
+         .name = "ambient",
+         .key = "ambient",
+         .member = &S::ambient,
+         .help = "Ambient light and background. off: black, so that the lights alone are seen",
+         .choices = {"on", "off"}});
+    add({.group = kScene,
+         .name = "source-radius",
+         .key = "sourceRadiusMetres",
+         .member = &S::sourceRadius,
+         .help =
+             "Source radius in metres of point and spot lights that state none; it makes penumbrae. 0: a fortieth of "
+             "the distance to the nearest surface that the light shines on",
+         .most = 1000.0});
     add({.group = kScene,
          .name = "seed",
          .key = "seed",
@@ -180,8 +198,11 @@ std::vector<Setting> makeTable() {
          .name = "bias-metres",
          .key = "biasMetres",
          .member = &S::biasMetres,
-         .help = "Oriented bias in metres, of lights that state none",
-         .most = 1000.0});
+         .help = "Oriented bias in metres, of lights that state none. auto: 2 mm, but at most a five-hundredth of the "
+                 "distance "
+                 "from a point or spot light, and of half the width of a cascade",
+         .check = checkBiasMetres,
+         .range = fmt::format("auto, or 0 to {}", kMostBiasMetres)});
     add({.group = kBias,
          .name = "subsurface-fronts",
          .key = "subsurfaceFronts",
@@ -214,6 +235,15 @@ std::vector<Setting> makeTable() {
          .member = &S::depth,
          .help = "Depth buffer of the camera",
          .choices = {"reversed", "standard"}});
+
+    add({.group = kMaps,
+         .name = "history",
+         .key = "history",
+         .member = &S::history,
+         .help =
+             "Whether shadow resolutions and places in the atlas are kept from frame to frame where they are nearly "
+             "right. off: a frame follows from scene, time and settings alone. auto: on in bench, off elsewhere",
+         .choices = {"auto", "on", "off"}});
 
     add({.group = kPools,
          .name = "list-entries",

@@ -17,7 +17,6 @@
 namespace gnomon::renderer {
 namespace {
 
-constexpr float kLargestHalf = 65504.0f;
 constexpr int kChannels = 4;
 constexpr std::array<char, kChannels> kChannelNames = {'A', 'B', 'G', 'R'};  // EXR wants them in alphabetical order
 
@@ -28,7 +27,7 @@ std::array<std::vector<float>, kChannels> planesOf(const HdrPicture& picture) {
         planes[c].resize(pixels);
         for (std::size_t i = 0; i < pixels; ++i) {
             const float value = picture.rgba[kChannels * i + (kChannels - 1 - c)];
-            planes[c][i] = std::isnan(value) ? value : std::clamp(value, -kLargestHalf, kLargestHalf);
+            planes[c][i] = std::isnan(value) ? value : std::clamp(value, -kBrightest, kBrightest);
         }
     }
     return planes;

@@ -15,6 +15,11 @@ struct HdrPicture {
     std::vector<float> rgba;
 };
 
+/// The brightest radiance that a renderer's picture of half floats holds.
+inline constexpr float kBrightest = 65504.0f;
+/// Pixels of which a channel is as bright as that, so that it may have been brighter.
+std::uint64_t clippedPixels(const HdrPicture& picture);
+
 /// sRGB, RGB, rows from the top.
 struct Picture {
     std::uint32_t width = 0, height = 0;

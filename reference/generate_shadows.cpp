@@ -30,9 +30,9 @@ Visibility sampleView(const LightModel& light, std::size_t which, const Pixel& p
                       bool faces, std::span<const DiskDirection> directions) {
     const auto views = std::span(input.views).subspan(light.firstShadowView, light.viewCount());
     const ShadowViewModel& view = views[which];
-    double bias = light.biasMetres;
-    if (pixel.subsurface) bias = std::max(bias, input.subsurfaceBiasMetres);
-    if (input.bias == BiasMode::Unbiased) bias = 0;
+    Bias bias;
+    if (input.bias != BiasMode::Unbiased)
+        bias = {light.biasMetres, pixel.subsurface ? input.subsurfaceBiasMetres : 0.0};
     const DepthMode mode = input.bias == BiasMode::Oriented ? DepthMode::Plane : DepthMode::Constant;
     const ReceiverInView receiver = receiverIn(view, pixel, mode, bias, faces || pixel.subsurface);
     if (receiver.unknown) return kAny;
@@ -59,9 +59,9 @@ Visibility sampleView(const LightModel& light, std::size_t which, const Pixel& p
     return result;
 }
 
-/// Faces of a point light that may be taken: the largest component, and those that float errors could put before it.
+/// Faces that may be taken: the largest component, and those that float errors could put before it.
 std::vector<std::size_t> facesOf(const LightModel& light, const Pixel& pixel) {
-    if (light.type != LightType::Point) return {0};
+    if (!light.sixFaces) return {0};
     const Vec3 v = pixel.position - light.position;
     const double error =
         2 * pixel.positionError + kRoundings * kFloatRoundoff * (sumOfMagnitudes(light.position) + sumOfMagnitudes(v));

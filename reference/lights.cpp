@@ -75,6 +75,8 @@ void checkShadowOf(Findings& findings, std::size_t index, const LightModel& ligh
     const std::uint32_t cascades = gpuLight.typeAndFlags >> gpu::kLightCascadesShift & gpu::kLightCascadesMask;
     if (cascades != light.cascadeCount)
         findings.add("light %zu has %u cascades instead of %u", index, cascades, light.cascadeCount);
+    if (((gpuLight.typeAndFlags & gpu::kLightSixFacesBit) != 0) != light.sixFaces)
+        findings.add("light %zu %s told to have six faces", index, light.sixFaces ? "is not" : "must not be");
     const std::uint32_t filter = gpuLight.typeAndFlags >> gpu::kLightFilterShift & gpu::kLightFilterMask;
     if (filter != filterNumber(light.filter))
         findings.add("light %zu has filter %u instead of %u", index, filter, filterNumber(light.filter));
@@ -138,6 +140,7 @@ std::vector<LightModel> makeLightModels(std::span<const Light> lights, std::span
         const LightShadowViews own = result.size() < views.size() ? views[result.size()] : LightShadowViews{};
         model.casts = light.casts && own.first != kNoShadowViews;
         if (model.casts) model.firstShadowView = own.first;
+        model.sixFaces = model.casts && !directional && own.count == gpu::kPointLightFaces;
         model.filter = light.filter;
         model.pcssPreset = light.pcssPreset;
         model.biasMetres = light.biasMetres;

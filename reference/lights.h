@@ -37,6 +37,7 @@ struct LightModel {
     std::uint32_t pcssPreset = 0;
     std::uint32_t firstShadowView = kNoShadowViews;
     std::uint32_t cascadeCount = 0;  ///< directional lights
+    bool sixFaces = false;           ///< its shadow views look along the six axes: point lights, and wide spots
     double biasMetres = 0;
     double lightFade = 1;      ///< 0: the light has faded away
     double shadowFade = 1;     ///< visibility = 1 - shadowFade * (1 - visibility)
@@ -45,7 +46,7 @@ struct LightModel {
     std::uint32_t hostIndex = 0;
 
     [[nodiscard]] std::uint32_t viewCount() const {
-        return type == LightType::Point ? gpu::kPointLightFaces : type == LightType::Spot ? 1 : cascadeCount;
+        return sixFaces ? gpu::kPointLightFaces : type == LightType::Directional ? cascadeCount : 1;
     }
 };
 

@@ -67,7 +67,7 @@ private:
     [[nodiscard]] Visibility filtered(Interval meanDepth) const;
     [[nodiscard]] Visibility filterAtRadius(Interval radius) const;
     [[nodiscard]] Visibility filterTap(TapPosition at) const;
-    [[nodiscard]] bool pointLight() const { return input_.views.size() == gpu::kPointLightFaces; }
+    [[nodiscard]] bool hasFaces() const { return input_.views.size() == gpu::kPointLightFaces; }
     /// Does the position stay where its own face can answer? Others than point lights always do.
     [[nodiscard]] Verdict stays(TapPosition at) const;
     [[nodiscard]] TapPosition clamped(TapPosition at) const {
@@ -86,7 +86,7 @@ private:
 };
 
 Verdict Pcss::stays(TapPosition at) const {
-    if (!pointLight()) return Verdict::Must;
+    if (!hasFaces()) return Verdict::Must;
     const auto inside = [](Interval px, double from, double to) { return both(atLeast(px, from), atLeast(-px, -to)); };
     return both(inside(at.xPx, view_.xPx + 1.0, view_.xPx + view_.widthPx - 1.0),
                 inside(at.yPx, view_.yPx + 1.0, view_.yPx + view_.heightPx - 1.0));

@@ -42,7 +42,7 @@ struct DiskDirection {
 std::vector<DiskDirection> diskDirections(std::uint32_t x, std::uint32_t y, std::uint32_t turn, int count);
 
 struct PcssInput {
-    std::span<const ShadowViewModel> views;  ///< of the light: one, or a point light's six faces
+    std::span<const ShadowViewModel> views;  ///< of the light: one, or six faces
     std::span<const AtlasCopy> atlases;
     std::size_t view = 0;  ///< the receiver's
     Interval sourceRadius;

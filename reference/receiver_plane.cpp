@@ -5,7 +5,7 @@ namespace gnomon::reference {
 namespace {
 
 constexpr double kMaxPositionErrorPx = 2.0;
-constexpr double kNearestLinearDepth = 1e-4;
+constexpr double kNearestOfNear = 1e-3;
 constexpr double kNormalError = 8 * kFloatRoundoff;
 
 Interval3 normalOf(const Pixel& pixel) {
@@ -18,7 +18,12 @@ Interval biasedDepth(const ShadowViewModel& view, Interval linearDepth, Interval
     const Interval a = rounded(view.depth.a), b = rounded(view.depth.b);
     const Interval nearer = linearDepth - biasMetres;
     if (view.orthographic) return a + b * nearer;
-    return a + b / max(nearer, kNearestLinearDepth);
+    return a + b / max(nearer, kNearestOfNear * abs(b));
+}
+
+Interval limitedBias(const ShadowViewModel& view, Interval linearDepth, const Bias& bias) {
+    const Interval most = view.orthographic ? rounded(view.mostBias) : rounded(view.mostBias) * max(linearDepth, 0.0);
+    return max(min(rounded(bias.metres), most), rounded(bias.leastMetres));
 }
 
 /// k raised to the least tilt, its sign kept: one interval, or two where the sign is open.
@@ -31,7 +36,7 @@ std::vector<Interval> tilted(Interval k, Interval least) {
 
 }  // namespace
 
-ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, DepthMode mode, double biasMetres,
+ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, DepthMode mode, const Bias& bias,
                           bool toward) {
     ReceiverInView result;
     const ShadowPosition at = project(view, pixel.position, pixel.positionError);
@@ -55,9 +60,10 @@ ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, Depth
     }
 
     const double sign = toward ? 1 : -1;
+    const Interval biasMetres = limitedBias(view, plane.linearDepth, bias);
     if (mode == DepthMode::Constant) {
         plane.slopeX = plane.slopeY = 0.0;
-        plane.depth = biasedDepth(view, plane.linearDepth, sign * rounded(biasMetres));
+        plane.depth = biasedDepth(view, plane.linearDepth, sign * biasMetres);
         result.planes.push_back(plane);
         return result;
     }
@@ -72,7 +78,7 @@ ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, Depth
     const Interval area = squareRoot(dot(across, across)), least = kLeastCosine * area * plane.ray;
     for (const Interval tilt : tilted(k, least)) {
         const Interval offPlane = within(pixel.offPlaneMetres, pixel.offPlaneError) * area / abs(tilt);
-        const Interval depth = biasedDepth(view, plane.linearDepth, sign * (rounded(biasMetres) + offPlane));
+        const Interval depth = biasedDepth(view, plane.linearDepth, sign * (biasMetres + offPlane));
         const Interval perNdc = view.orthographic ? -(b / tilt) : b / (plane.linearDepth * tilt);
         plane.slopeX = perNdc * alpha / scaleX;
         plane.slopeY = perNdc * beta / scaleY;

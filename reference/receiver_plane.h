@@ -43,8 +43,12 @@ struct ReceiverInView {
     bool unknown = false;      ///< anything may come out
     std::vector<ReceiverPlane> planes;
 };
+/// What the light's bias and the view's limit to it allow, but `leastMetres` at least.
+struct Bias {
+    double metres = 0.0, leastMetres = 0.0;
+};
 /// The bias, and with it the slack, is toward the light or away from it.
-ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, DepthMode mode, double biasMetres,
+ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, DepthMode mode, const Bias& bias,
                           bool toward);
 
 /// Device depth of the plane at an atlas position. `limited`: no more than |slopeX| + |slopeY| farther from the light

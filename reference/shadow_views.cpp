@@ -64,6 +64,7 @@ std::vector<ShadowViewModel> makeShadowViewModels(std::span<const ShadowView> vi
         // One metre across the view at linear depth 1 (or anywhere) is |row| of ndc, of which the rectangle holds two.
         model.pxPerMetreX = length(rowOf(model.clipFromWorld, 0)) * 0.5 * model.widthPx;
         model.pxPerMetreY = length(rowOf(model.clipFromWorld, 1)) * 0.5 * model.heightPx;
+        model.mostBias = std::min(static_cast<double>(view.mostBias), model.mostBias);
         result.push_back(model);
     }
     return result;
@@ -103,6 +104,8 @@ Findings checkShadowViews(std::span<const ShadowView> views, std::span<const gpu
             !near(view.pxPerMetre.y, model.pxPerMetreY, 1e-6 * model.pxPerMetreY))
             findings.add("shadow view %zu: %g x %g texels per metre instead of %g x %g", i, view.pxPerMetre.x,
                          view.pxPerMetre.y, model.pxPerMetreX, model.pxPerMetreY);
+        if (!near(view.mostBias, model.mostBias, 1e-6 * model.mostBias))
+            findings.add("shadow view %zu: bias of at most %g instead of %g", i, view.mostBias, model.mostBias);
     }
     return findings;
 }

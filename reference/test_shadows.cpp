@@ -6,6 +6,8 @@
 namespace gnomon::reference {
 namespace {
 
+constexpr float kLimitedBias = 0.0004f;  // less than the lights' 2 mm up to 5 m, or anywhere
+
 Vec3 anyAcross(Vec3 direction) {
     const Vec3 helper = std::abs(direction.y) > 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
     return normalize(cross(direction, helper));
@@ -28,11 +30,16 @@ std::vector<ShadowView> cascadesOf(const Light& light, std::uint32_t count, cons
     return result;
 }
 
+/// Point lights, and spots too wide for one view.
+bool hasSixFaces(const Light& light) {
+    return light.type == LightType::Point || (light.type == LightType::Spot && light.outerConeAngle > 1.1f);
+}
+
 std::vector<ShadowView> viewsOf(const Light& light, const ShadowSetup& setup, bool reversed, double rangeMetres) {
     const Vec3 from = vec3(light.position);
     const double farMetres = setup.infiniteFar ? kInfinity : rangeMetres * 1.1 + setup.nearMetres;
     std::vector<ShadowView> result;
-    if (light.type == LightType::Spot) {
+    if (!hasSixFaces(light)) {
         const Vec3 direction = normalize(vec3(light.direction));
         // A texel more on every side than the cone needs.
         const double widen = setup.viewSizePx / (setup.viewSizePx - 2.0);
@@ -54,6 +61,7 @@ void place(std::vector<ShadowView>& views, const ShadowSetup& setup) {
     for (std::uint32_t i = 0; i < views.size(); ++i) {
         const std::uint32_t cell = i / (setup.atlasCount * setup.layers);
         ShadowView& view = views[i];
+        if (i % 3 == 0) view.mostBias = kLimitedBias;
         view.atlas = i % setup.atlasCount;
         view.layer = i / setup.atlasCount % setup.layers;
         // One texel between cells, and around them.
@@ -135,9 +143,9 @@ std::vector<LightShadowViews> numberViews(std::span<const Light> lights, const S
     for (std::uint32_t i = 0; i < lights.size(); ++i) {
         if (!lights[i].casts) continue;
         const std::uint32_t cascades = setup.cascades > 0 ? setup.cascades : 1 + i % 4;
-        const std::uint32_t count = lights[i].type == LightType::Point  ? gpu::kPointLightFaces
-                                    : lights[i].type == LightType::Spot ? 1
-                                                                        : cascades;
+        const std::uint32_t count = lights[i].type == LightType::Directional ? cascades
+                                    : hasSixFaces(lights[i])                 ? gpu::kPointLightFaces
+                                                                             : 1;
         result[i] = {next, count};
         next += count;
     }

@@ -4,8 +4,8 @@
 // What: every point light that is to cast gets six views, every spot one that holds its cone, every directional light
 // its cascades, each three times as wide as the one before and centred on whole texels of its own, all packed into the
 // atlases' cells one after the other. Each texel's ray is cast through its centre in double precision and stored as
-// device depth. Texels outside every rectangle hold the nearest possible depth: a kernel that leaves its rectangle
-// finds shadow there.
+// device depth. Every third view limits the lights' bias. Texels outside every rectangle hold the nearest possible
+// depth: a kernel that leaves its rectangle finds shadow there.
 
 #include <span>
 #include <vector>

@@ -38,8 +38,9 @@ std::shared_ptr<SharedPipelines> pipelinesFor(const Device& device, const Render
     return given;
 }
 
-ShadowPlanCamera planCameraOf(const SceneCamera& camera, const GBufferCamera& gbuffer, const glm::dvec3& origin,
+ShadowPlanCamera planCameraOf(const SceneCamera& given, const GBufferCamera& gbuffer, const glm::dvec3& origin,
                               std::uint32_t widthPx, std::uint32_t heightPx) {
+    const SceneCamera camera = fittedCamera(given, widthPx, heightPx);
     ShadowPlanCamera c;
     c.position = glm::dvec3(camera.worldFromCamera[3]);
     c.pixelsPerRadian = static_cast<float>(heightPx) / (2.0f * std::tan(0.5f * camera.verticalFieldOfView));
@@ -56,19 +57,12 @@ ShadowPlanCamera planCameraOf(const SceneCamera& camera, const GBufferCamera& gb
     return c;
 }
 
-ShadowPlanSettings planSettingsOf(const Device& device, const Scene& scene, const RendererDesc& desc) {
+ShadowPlanSettings planSettingsOf(const Device& device, const RendererDesc& desc) {
     ShadowPlanSettings settings;
     const std::uint32_t largest = std::bit_floor(device.limits().maxFramebufferWidth);
     const std::uint32_t wanted =
         desc.atlasSizePx != 0 ? desc.atlasSizePx : ShadowAtlasImage::defaultSizePx(device, desc.frame.heightPx);
     settings.atlasSizePx = std::min(std::bit_floor(wanted), largest);
-    const Bounds bounds = animatedBounds(scene, 16);
-    if (!bounds.empty()) {
-        // Room for what moves, and no box of zero depth.
-        const double radius = bounds.radius();
-        settings.casters = {glm::dvec3(bounds.centre()), 1.05 * radius + 1e-3};
-        settings.cascades.reachMetres = static_cast<float>(std::max(200.0, 2.0 * radius));
-    }
     return settings;
 }
 
@@ -117,7 +111,7 @@ struct Renderer::State {
           timeline(makeTimeline(pipelines->context())),
           scene(d, s),
           gbuffer(d, scene, r.frame.widthPx, r.frame.heightPx),
-          planner(planSettingsOf(d, s, r)),
+          planner(planSettingsOf(d, r)),
           shadowmaps(d, pipelines->context(), scene, r, planner.settings().atlasSizePx, kFramesInFlight),
           lighting(d, pipelines->lighting(), s, gbuffer),
           commands{Commands(d), Commands(d)} {
@@ -195,10 +189,6 @@ void Renderer::State::setTime(double seconds) {
 
 void Renderer::State::takePose() {
     scene.setPose(pose);
-    // What leaves the bounds must still cast; with room to spare, so that the cascades rarely change.
-    const CasterBounds casters = planner.settings().casters;
-    const double reach = scene.reachOfMoved(casters.centre);
-    if (reach > casters.radius) planner.setCasters({casters.centre, 1.25 * reach});
     for (std::size_t i = 0; i < sceneLights.size(); ++i) {
         if (sceneLights[i].node == kNone) continue;
         requireReachable(sceneLights[i].position, "light", sceneLights[i].name);
@@ -222,9 +212,11 @@ PreparedLights Renderer::State::prepareLights(View& view, const Camera& camera, 
 ShadowPlan Renderer::State::planShadows(const PreparedLights& prepared, const SceneCamera& sceneCamera,
                                         const Camera& camera, const glm::dvec3& origin) {
     chooseCasters(sceneLights, prepared, shadowLights);
-    return planner.plan(shadowLights,
-                        planCameraOf(sceneCamera, gbufferCameraOf(camera), origin, settings.widthPx, settings.heightPx),
-                        origin);
+    const ShadowPlanCamera seenBy =
+        planCameraOf(sceneCamera, gbufferCameraOf(camera), origin, settings.widthPx, settings.heightPx);
+    ShadowPlan plan = planner.plan(shadowLights, seenBy, scene.parts(seenBy.frustum), origin, settings.history);
+    limitBiases(sceneLights, settings, plan.views);
+    return plan;
 }
 
 // Everything else that the library wants to know of the frame.
@@ -348,8 +340,8 @@ std::vector<float> Renderer::readVisibility(std::uint32_t light) {
     wait();
     const VkExtent2D whole = s.gbuffer.extent();
     if (s.lightVisibility == nullptr)
-        s.lightVisibility = std::make_unique<LightVisibility>(s.device, s.pipelines->lightVisibility(), whole.width,
-                                                              whole.height);
+        s.lightVisibility =
+            std::make_unique<LightVisibility>(s.device, s.pipelines->lightVisibility(), whole.width, whole.height);
     return s.lightVisibility->read(*s.shadowmaps.current().view, s.lastShadows, light, s.lastExtent.width,
                                    s.lastExtent.height);
 }

@@ -4,14 +4,17 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "scene/pose.h"
 #include "scene/scene.h"
 
 namespace gnomon::renderer {
 namespace {
 
-// Within the nearest thing one looks at in a room, yet no closer than the scene's size warrants.
+// Within the nearest thing one looks at in a room, yet no closer than the scene's size warrants. A scene may be as
+// small as it likes.
 float nearDistance(const Scene& scene) {
-    return std::clamp(0.004f * worldBounds(scene).radius(), 0.005f, 1.0f);
+    const float radius = animatedExtent(scene).drawn.radius();
+    return radius > 0.0f ? std::min(0.004f * radius, 1.0f) : 0.005f;
 }
 
 glm::mat4 lookingAt(const glm::vec3& eye, const glm::vec3& target) {
@@ -77,11 +80,28 @@ float framingDistance(const Bounds& bounds, const glm::vec3& toEye, float vertic
 
 }  // namespace
 
+SceneCamera fittedCamera(const SceneCamera& camera, std::uint32_t widthPx, std::uint32_t heightPx) {
+    constexpr float kWidest = 3.1415f;  // radians; the tangent of half of it is still positive
+    const float picture = static_cast<float>(widthPx) / static_cast<float>(heightPx);
+    SceneCamera out = camera;
+    out.widthOverHeight = 0.0f;
+    if (!(camera.widthOverHeight > picture)) return out;
+    const float taller = camera.widthOverHeight / picture;
+    out.orthographicHalfHeight *= taller;
+    const float half = std::atan(taller * std::tan(0.5f * camera.verticalFieldOfView));
+    out.verticalFieldOfView = std::max(camera.verticalFieldOfView, std::min(2.0f * half, kWidest));
+    return out;
+}
+
 SceneCamera defaultCamera(const Scene& scene) {
     if (!scene.cameras.empty()) return scene.cameras.front();
-    Bounds bounds = worldBounds(scene);
-    for (const SceneLight& light : scene.lights)
-        if (scene.instances.empty() && light.kind != LightKind::Directional) bounds.add(light.position);
+    const AnimatedExtent extent = animatedExtent(scene);
+    Bounds bounds = extent.drawn;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        if (!scene.instances.empty() || scene.lights[i].kind == LightKind::Directional) continue;
+        bounds.add(extent.lights[i].min);
+        bounds.add(extent.lights[i].max);
+    }
     SceneCamera camera;
     camera.name = "default";
     const float radius = bounds.radius() > 0.0f ? bounds.radius() : 1.0f;

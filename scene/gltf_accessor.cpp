@@ -6,9 +6,6 @@
 namespace gnomon::renderer::gltf {
 namespace {
 
-// Elements of a sparse accessor without a base have no bytes that vouch for their count.
-constexpr std::size_t kMaxUnbackedElements = 1u << 22;
-
 template <class T>
 T load(const std::uint8_t* bytes) {
     T value;
@@ -59,9 +56,8 @@ const std::uint8_t* checkedRange(std::span<const std::uint8_t> bytes, std::size_
     return bytes.data() + offset;
 }
 
-void makeDense(Elements& elements, std::size_t elementBytes, std::string_view user) {
-    if (!elements.data && elements.count > kMaxUnbackedElements)
-        refuse("{} wants {} elements without a bufferView", user, elements.count);
+// A copy, elements side by side; zeros where there is nothing to copy (glTF 2.0, section 5.1.1).
+void makeDense(Elements& elements, std::size_t elementBytes) {
     elements.storage.assign(elements.count * elementBytes, 0);
     for (std::size_t i = 0; elements.data && i < elements.count; ++i)
         std::memcpy(elements.storage.data() + i * elementBytes, elements.data + i * elements.stride, elementBytes);
@@ -90,7 +86,7 @@ void applySparse(Document& document, const tinygltf::Accessor& source, Elements&
     const std::uint8_t* values =
         checkedRange(document.view(sparse.values.bufferView, user).bytes,
                      static_cast<std::size_t>(sparse.values.byteOffset), count, elementBytes, elementBytes, user);
-    makeDense(elements, elementBytes, user);
+    makeDense(elements, elementBytes);
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t index = indices.unsignedValue(i, 0);
         if (index >= elements.count) refuse("{} has the sparse index {} for {} elements", user, index, elements.count);
@@ -154,8 +150,9 @@ Elements openAccessor(Document& document, int accessor, std::string_view user) {
             refuse("{} has elements of {} bytes, {} apart", user, elementBytes, elements.stride);
         elements.data =
             checkedRange(view.bytes, source.byteOffset, elements.count, elements.stride, elementBytes, user);
-    } else if (!source.sparse.isSparse) {
-        refuse("{} is an accessor without a bufferView", user);
+    } else {
+        document.spendUnbackedElements(elements.count, user);
+        if (!source.sparse.isSparse) makeDense(elements, elementBytes);
     }
     if (source.sparse.isSparse) applySparse(document, source, elements, user);
     return elements;

@@ -100,7 +100,8 @@ Container openContainer(std::span<const std::uint8_t> file) {
     }
     if (file.size() < 20) refuse("the GLB file ends within its header");
     const std::uint32_t version = littleEndian32(file, 4), length = littleEndian32(file, 8);
-    if (version != 2) refuse("the GLB container has version {}, only 2 is read", version);
+    if (version == 1) refuse("the file is glTF version 1.0; only 2.0 is read");
+    if (version != 2) refuse("the GLB container has version {}; only 2 is read", version);
     if (length > file.size()) refuse("the GLB file is truncated: {} of {} bytes are there", file.size(), length);
     if (length < 20) refuse("the GLB header gives a length of {} bytes", length);
     file = file.first(length);

@@ -1,5 +1,7 @@
-// Opening a glTF file. The JSON is parsed once, to check its shape and to take out what the loader reads by itself
-// (buffers, images, animations). The rest goes to tinygltf. The reasons were all met with tinygltf 2.7:
+// Opening a glTF file. The JSON is parsed once, to check its types and to take out what the loader reads by itself
+// (buffers, images, animations, indices). The rest goes to tinygltf. The reasons were all met with tinygltf 2.7:
+// - it puts defaults in the place of values of a wrong type;
+// - it refuses indices without a bufferView, which are zeros;
 // - it reads eight bytes past a GLB whose last chunk is too long;
 // - it forms addresses from unchecked image views;
 // - it drops primitives that it cannot parse without a word;
@@ -8,10 +10,11 @@
 #include "scene/gltf_document.h"
 
 #include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
 
 #include "scene/gltf_bytes.h"
+#include "scene/gltf_extensions.h"
+#include "scene/gltf_schema.h"
 
 namespace gnomon::renderer::gltf {
 namespace {
@@ -20,29 +23,8 @@ using nlohmann::json;
 
 constexpr std::size_t kMaxNotes = 48;
 constexpr std::size_t kMaxMotionNumbers = 1u << 27;  // 512 MiB
-
-// Read in full.
-constexpr std::array kSupported = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_materials_emissive_strength",
-                                   "KHR_mesh_quantization", "KHR_draco_mesh_compression"};
-// Known, and the core material beneath is a fair picture of them.
-constexpr std::array kApproximated = {"KHR_materials_unlit",
-                                      "KHR_materials_ior",
-                                      "KHR_materials_specular",
-                                      "KHR_materials_clearcoat",
-                                      "KHR_materials_sheen",
-                                      "KHR_materials_transmission",
-                                      "KHR_materials_volume",
-                                      "KHR_materials_iridescence",
-                                      "KHR_materials_dispersion",
-                                      "KHR_materials_anisotropy",
-                                      "KHR_materials_variants",
-                                      "KHR_materials_diffuse_transmission",
-                                      "KHR_materials_pbrSpecularGlossiness"};
-
-template <std::size_t N>
-bool contains(const std::array<const char*, N>& names, const std::string& name) {
-    return std::any_of(names.begin(), names.end(), [&](const char* known) { return name == known; });
-}
+// No bytes vouch for what has no bufferView.
+constexpr std::size_t kMaxUnbackedElements = 1u << 22, kMaxUnbackedElementsInAll = 1u << 25;
 
 json parseJson(std::string_view text) {
     checkNesting(text);
@@ -56,31 +38,6 @@ json parseJson(std::string_view text) {
     }
 }
 
-// Every top-level collection that is read is an array of objects.
-void checkCollections(const json& root) {
-    if (!root.is_object()) refuse("the JSON's root is not an object");
-    for (const char* name : {"accessors", "animations", "bufferViews", "buffers", "cameras", "images", "materials",
-                             "meshes", "nodes", "samplers", "scenes", "skins", "textures"}) {
-        const auto found = root.find(name);
-        if (found == root.end()) continue;
-        if (!found->is_array()) refuse("'{}' is not an array", name);
-        for (const json& element : *found)
-            if (!element.is_object()) refuse("'{}' holds something that is not an object", name);
-    }
-    if (root.contains("scene") && !root["scene"].is_number_integer()) refuse("'scene' is not an index");
-}
-
-void checkAsset(const json& root) {
-    const auto asset = root.find("asset");
-    if (asset == root.end() || !asset->is_object() || !asset->contains("version") || !(*asset)["version"].is_string())
-        refuse("the file gives no glTF version");
-    const std::string version = (*asset)["version"];
-    if (!version.starts_with("2.")) refuse("the file is glTF version '{}', only 2.0 is read", version.substr(0, 20));
-    const auto least = asset->find("minVersion");
-    if (least != asset->end() && *least != "2.0")
-        refuse("the file asks for glTF version {}, only 2.0 is read", least->dump());
-}
-
 std::string stringMember(const json& object, const char* name) {
     const auto found = object.find(name);
     return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
@@ -88,74 +45,47 @@ std::string stringMember(const json& object, const char* name) {
 
 int indexMember(const json& object, const char* name) {
     const auto found = object.find(name);
-    if (found == object.end()) return -1;
-    if (!found->is_number_integer()) refuse("'{}' is not an index", name);
-    const auto value = found->get<std::int64_t>();
-    return value < 0 || value > 0x7FFFFFFF ? 0x7FFFFFFF : static_cast<int>(value);
+    return found == object.end() ? -1 : found->get<int>();
 }
 
-// As indexMember(), but what is no index is found when somebody needs it.
-int laterIndexMember(const json& object, const char* name) {
-    const auto found = object.find(name);
-    if (found == object.end()) return -1;
-    return found->is_number_integer() ? indexMember(object, name) : 0x7FFFFFFF;
-}
-
-// The objects of an array member; nothing where there is none.
-std::vector<json> objects(const json& object, const char* name) {
-    std::vector<json> out;
-    const auto found = object.find(name);
-    if (found == object.end() || !found->is_array()) return out;
-    for (const json& element : *found) out.push_back(element.is_object() ? element : json::object());
-    return out;
+json arrayMember(const json& object, const char* name) {
+    return object.value(name, json::array());
 }
 
 AnimationSource animationSource(const json& from) {
     AnimationSource out;
     out.name = stringMember(from, "name");
-    for (const json& sampler : objects(from, "samplers"))
-        out.samplers.push_back({laterIndexMember(sampler, "input"), laterIndexMember(sampler, "output"),
-                                stringMember(sampler, "interpolation")});
-    for (const json& channel : objects(from, "channels")) {
+    for (const json& sampler : arrayMember(from, "samplers"))
+        out.samplers.push_back(
+            {indexMember(sampler, "input"), indexMember(sampler, "output"), stringMember(sampler, "interpolation")});
+    for (const json& channel : arrayMember(from, "channels")) {
         const auto target = channel.find("target");
-        if (target == channel.end() || !target->is_object()) continue;
+        if (target == channel.end()) continue;
         out.channels.push_back(
-            {laterIndexMember(channel, "sampler"), laterIndexMember(*target, "node"), stringMember(*target, "path")});
+            {indexMember(channel, "sampler"), indexMember(*target, "node"), stringMember(*target, "path")});
     }
     return out;
 }
 
-void checkTargets(const json& primitive, const std::string& mesh) {
-    const auto targets = primitive.find("targets");
-    if (targets == primitive.end()) return;
-    if (!targets->is_array()) refuse("the morph targets of mesh '{}' are not an array", mesh);
-    for (const json& target : *targets) {
-        if (!target.is_object()) refuse("a morph target of mesh '{}' is not an object", mesh);
-        for (const json& index : target)
-            if (!index.is_number_integer())
-                refuse("a morph target of mesh '{}' holds something that is no index", mesh);
-    }
-}
-
-// Checks the parts of meshes that tinygltf would drop without a word. Draco brings its own indices, and tinygltf cannot
-// know that their accessor needs no bufferView, so the reference goes.
-void prepareMeshes(json& root) {
-    if (!root.contains("meshes")) return;
+// Takes the indices of all primitives out, in order: -1 where there are none. tinygltf refuses those whose accessor has
+// no bufferView. With Draco they do not count: it brings its own.
+std::vector<int> takeIndices(json& root) {
+    std::vector<int> taken;
+    if (!root.contains("meshes")) return taken;
+    std::size_t number = 0;
     for (json& mesh : root["meshes"]) {
-        if (!mesh.contains("primitives") || !mesh["primitives"].is_array()) refuse("a mesh has no array of primitives");
+        if (!mesh.contains("primitives")) refuse("meshes[{}] has no primitives", number);
         for (json& primitive : mesh["primitives"]) {
-            if (!primitive.is_object() || !primitive.contains("attributes") || !primitive["attributes"].is_object())
-                refuse("a primitive of mesh '{}' has no attributes", stringMember(mesh, "name"));
-            for (const json& index : primitive["attributes"])
-                if (!index.is_number_integer())
-                    refuse("an attribute of mesh '{}' is not an index", stringMember(mesh, "name"));
-            checkTargets(primitive, stringMember(mesh, "name"));
+            if (!primitive.contains("attributes"))
+                refuse("a primitive of mesh '{}' has no attributes", stringMember(mesh, "name").substr(0, 60));
             const auto extensions = primitive.find("extensions");
-            if (extensions != primitive.end() && extensions->is_object() &&
-                extensions->contains("KHR_draco_mesh_compression"))
-                primitive.erase("indices");
+            const bool draco = extensions != primitive.end() && extensions->contains("KHR_draco_mesh_compression");
+            taken.push_back(draco ? -1 : indexMember(primitive, "indices"));
+            primitive.erase("indices");
         }
+        ++number;
     }
+    return taken;
 }
 
 }  // namespace
@@ -206,20 +136,19 @@ Document::Document(const std::filesystem::path& path) : folder_(path.parent_path
 
 void Document::parse(std::string_view text) {
     json root = parseJson(text);
-    checkCollections(root);
-    checkAsset(root);
-    prepareMeshes(root);
-    for (const json& source : root.value("buffers", json::array())) {
-        const auto length = source.find("byteLength");
+    checkVersion(root);
+    checkTypes(root);
+    const std::vector<int> indices = takeIndices(root);
+    for (const json& source : arrayMember(root, "buffers")) {
         BufferSource buffer;
         buffer.uri = stringMember(source, "uri");
-        if (length != source.end() && length->is_number_unsigned()) buffer.byteLength = length->get<std::uint64_t>();
+        buffer.byteLength = source.value("byteLength", std::uint64_t{0});
         buffers_.push_back(std::move(buffer));
     }
-    for (const json& source : root.value("images", json::array()))
+    for (const json& source : arrayMember(root, "images"))
         images_.push_back(
             {stringMember(source, "name"), stringMember(source, "uri"), indexMember(source, "bufferView")});
-    for (const json& source : root.value("animations", json::array())) animations_.push_back(animationSource(source));
+    for (const json& source : arrayMember(root, "animations")) animations_.push_back(animationSource(source));
     for (const char* name : {"buffers", "images", "animations", "extras"}) root.erase(name);
 
     const std::string rest = root.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -232,15 +161,19 @@ void Document::parse(std::string_view text) {
         std::replace(errors.begin(), errors.end(), '\n', ' ');
         refuse("the glTF is malformed: {}", errors.empty() ? "no reason is known" : errors.substr(0, 160));
     }
+    std::size_t next = 0;
+    for (tinygltf::Mesh& mesh : model_.meshes)
+        for (tinygltf::Primitive& primitive : mesh.primitives)
+            primitive.indices = next < indices.size() ? indices[next++] : -1;
+    if (next != indices.size()) refuse("a primitive of a mesh cannot be read");
 }
 
 void Document::checkExtensions() {
     for (const std::string& name : model_.extensionsRequired)
-        if (!contains(kSupported, name) && !contains(kApproximated, name))
+        if (!isAccepted(name))
             refuse("the file requires the extension '{}', which is not supported", name.substr(0, 80));
     for (const std::string& name : model_.extensionsUsed)
-        if (!contains(kSupported, name) && !name.empty())
-            note(fmt::format("The extension '{}' is not or only partly read.", name));
+        if (std::string sentence = costOf(name); !sentence.empty()) note(std::move(sentence));
 }
 
 std::span<const std::uint8_t> Document::bufferBytes(int index, std::string_view user) {
@@ -300,6 +233,12 @@ void Document::spendMotionNumbers(std::size_t count) {
     if (count > kMaxMotionNumbers - motionNumbers_)
         refuse("the morph targets and animations hold more than {} numbers", kMaxMotionNumbers);
     motionNumbers_ += count;
+}
+
+void Document::spendUnbackedElements(std::size_t count, std::string_view user) {
+    if (count > kMaxUnbackedElements || count > kMaxUnbackedElementsInAll - unbackedElements_)
+        refuse("{} wants {} elements without a bufferView", user, count);
+    unbackedElements_ += count;
 }
 
 void Document::note(std::string sentence) {

@@ -58,7 +58,7 @@ struct ImageSource {
     int bufferView = -1;
 };
 
-/// As written: nothing in it has been checked. An index that is none is 0x7FFFFFFF, an absent one -1.
+/// As written: types are right, but indices may point nowhere. An absent one is -1.
 struct AnimationSource {
     struct Sampler {
         int input = -1, output = -1;
@@ -90,6 +90,9 @@ public:
     /// Counts what morph targets and animations are about to hold, because many of them may share the same bytes.
     void spendMotionNumbers(std::size_t count);
 
+    /// The same for accessors without a bufferView, which no bytes of the file vouch for.
+    void spendUnbackedElements(std::size_t count, std::string_view user);
+
     /// The bytes of a bufferView after all checks. They live as long as the document.
     BytesOfView view(int bufferView, std::string_view user);
     /// Encoded bytes of an image, or nothing and a note. `storage` keeps bytes that the document itself does not hold.
@@ -119,7 +122,7 @@ private:
     std::vector<BufferSource> buffers_;
     std::vector<ImageSource> images_;
     std::vector<AnimationSource> animations_;
-    std::size_t motionNumbers_ = 0;
+    std::size_t motionNumbers_ = 0, unbackedElements_ = 0;
     std::vector<std::string> notes_;
     std::unordered_set<std::string> noted_;
     std::size_t heldBack_ = 0;

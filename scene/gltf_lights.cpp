@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
 
+#include "scene/pose.h"
+
 namespace gnomon::renderer::gltf {
 namespace {
 
@@ -43,11 +45,13 @@ void addLight(Document& document, const PlacedNode& node, Scene& scene) {
         refuse("{} has the unknown type '{}'", user, source.type.substr(0, 40));
     }
     light.position = glm::vec3(node.worldFromNode[3]);
-    const glm::vec3 backwards(node.worldFromNode[2]);
-    const float length = glm::length(backwards);
-    if (light.kind != LightKind::Point && !(length > 1.0e-12f))
+    // A scale of zero along its axis hides the direction; the two other axes still tell it.
+    const glm::dmat3 axes(glm::mat3(node.worldFromNode));
+    const glm::dvec3 backwards = axes[2] != glm::dvec3(0.0) ? axes[2] : glm::cross(axes[0], axes[1]);
+    const double length = glm::length(backwards);
+    if (light.kind != LightKind::Point && !(length > 0.0))
         refuse("{} has a scale of zero, so {} has no direction", carrierName, user);
-    if (light.kind != LightKind::Point) light.direction = -backwards / length;
+    if (light.kind != LightKind::Point) light.direction = glm::vec3(-backwards / length);
     if (!source.color.empty()) {
         if (source.color.size() != 3) refuse("{} has a colour of {} numbers", user, source.color.size());
         for (int c = 0; c < 3; ++c) {
@@ -60,16 +64,19 @@ void addLight(Document& document, const PlacedNode& node, Scene& scene) {
     light.rangeMetres = light.kind == LightKind::Directional ? 0.0f : toFloat(source.range, user);
     if (light.rangeMetres < 0.0f) refuse("{} has the range {}", user, light.rangeMetres);
     if (const tinygltf::Value* bias = member(source.extras, "shadowBiasMetres")) {
-        light.biasMetres = bias->IsNumber() ? toFloat(bias->GetNumberAsDouble(), user) : -1.0f;
+        light.biasMetres = toFloat(bias->GetNumberAsDouble(), user);
         if (!(light.biasMetres >= 0.0f && light.biasMetres <= 1000.0f))
             refuse("{} has a shadowBiasMetres that is no length of up to 1000 m", user);
     }
+    if (const tinygltf::Value* radius = member(source.extras, "sourceRadius")) {
+        light.sourceRadius = toFloat(radius->GetNumberAsDouble(), user);
+        const float most = light.kind == LightKind::Directional ? 0.5f : kFarthestUnits;
+        if (!(light.sourceRadius > 0.0f && light.sourceRadius <= most))
+            refuse("{} has the sourceRadius {}", user, light.sourceRadius);
+    }
     if (const tinygltf::Value* filter = member(source.extras, "shadowFilter")) {
-        const std::string name = filter->IsString() ? filter->Get<std::string>() : "";
-        if (name == "hard") light.filter = Filter::Hard;
-        if (name == "pcf") light.filter = Filter::Pcf;
-        if (name == "pcss") light.filter = Filter::Pcss;
-        if (!light.filter) refuse("{} has a shadowFilter that is none of hard, pcf and pcss", user);
+        const auto& name = filter->Get<std::string>();
+        light.filter = name == "hard" ? Filter::Hard : name == "pcf" ? Filter::Pcf : Filter::Pcss;
     }
     scene.lights.push_back(std::move(light));
 }
@@ -98,10 +105,15 @@ void addCamera(Document& document, const PlacedNode& node, Scene& scene) {
             farthest = source.orthographic.zfar;
             camera.orthographicHalfHeight = std::abs(toFloat(source.orthographic.ymag, user));
             if (!(camera.orthographicHalfHeight > 0.0f)) refuse("{} has a height of zero", user);
+            const float halfWidth = std::abs(toFloat(source.orthographic.xmag, user));
+            if (!(halfWidth > 0.0f)) refuse("{} has a width of zero", user);
+            camera.widthOverHeight = halfWidth / camera.orthographicHalfHeight;
         } else if (source.type == "perspective") {
             camera.verticalFieldOfView = toFloat(source.perspective.yfov, user);
             if (!(camera.verticalFieldOfView > 0.0f && camera.verticalFieldOfView < glm::pi<float>()))
                 refuse("{} has a field of view of {} radians", user, camera.verticalFieldOfView);
+            camera.widthOverHeight = toFloat(source.perspective.aspectRatio, user);
+            if (!(camera.widthOverHeight >= 0.0f)) refuse("{} has an aspect ratio of {}", user, camera.widthOverHeight);
         } else {
             refuse("{} has the unknown type '{}'", user, source.type.substr(0, 40));
         }

@@ -1,5 +1,7 @@
 #include "scene/gltf_material.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <atomic>
 #include <thread>
@@ -65,7 +67,7 @@ Material MaterialLoader::load(const tinygltf::Material& source, const std::strin
     if (const auto* glossy = extension(source.extensions, "KHR_materials_pbrSpecularGlossiness"))
         specularGlossiness(*glossy, out, user);
     const tinygltf::Value* flag = member(source.extras, "subsurface");
-    out.subsurface = (flag && flag->IsBool() && flag->Get<bool>()) ||
+    out.subsurface = (flag && flag->Get<bool>()) ||
                      source.extensions.contains("KHR_materials_transmission") ||
                      source.extensions.contains("KHR_materials_diffuse_transmission");
     return out;
@@ -134,6 +136,23 @@ TextureUse MaterialLoader::texture(int index, int texcoord, const tinygltf::Valu
     const ImageKey key(source.source, mirrorU, mirrorV);
     out.image = imageSlots_.emplace(key, static_cast<std::uint32_t>(imageSlots_.size())).first->second;
     return out;
+}
+
+void MaterialLoader::noteBlended() {
+    constexpr std::size_t kMostNamed = 3;
+    std::vector<std::string> names;
+    std::size_t count = 0;
+    for (const Material& material : scene_.materials) {
+        if (material.alphaMode != AlphaMode::Blend) continue;
+        ++count;
+        if (!material.name.empty() && names.size() < kMostNamed)
+            names.push_back(fmt::format("'{}'", material.name.substr(0, 40)));
+    }
+    if (count == 0) return;
+    if (!names.empty() && names.size() < count) names.emplace_back("...");
+    document_.note(fmt::format("{} of {} materials {} blended{}: alpha below 0.5 is cut out, the rest is drawn opaque.",
+                               count, scene_.materials.size(), count == 1 ? "is" : "are",
+                               names.empty() ? "" : fmt::format(" ({})", fmt::join(names, ", "))));
 }
 
 void MaterialLoader::decodeImages() {

@@ -18,6 +18,8 @@ public:
     std::uint32_t use(int material, std::string_view user);
     /// Decodes every image asked for. Textures whose image cannot be read are dropped: their factor alone is drawn.
     void decodeImages();
+    /// Says how blended materials are drawn, if there are any.
+    void noteBlended();
 
 private:
     // An image with the axes along which a mirrored copy is appended: samplers know no mirrored repeat here.

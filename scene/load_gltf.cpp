@@ -39,6 +39,7 @@ public:
         noteDarkLights();
         if (scene_.materials.empty()) materials_.use(-1, "the scene");
         materials_.decodeImages();
+        materials_.noteBlended();
         for (LoadedMesh& mesh : loaded_) finishMesh(mesh);
         motion_.loadAnimations();
         checkRestPose();
@@ -139,8 +140,9 @@ private:
 
     // False, with a note, for what will never be seen.
     bool canPlace(const LoadedMesh& mesh, const glm::mat4& worldFromObject, bool moves, const std::string& user) {
-        if (!moves && !(std::abs(glm::determinant(glm::mat3(worldFromObject))) > 1.0e-30f)) {
-            document_.note(fmt::format("{} has a scale of zero and is not drawn.", user));
+        const glm::mat3 linear(worldFromObject);
+        if (!moves && linear == glm::mat3(0.0f)) {
+            document_.note(fmt::format("{} has a scale of zero on all axes and is not drawn.", user));
             return false;
         }
         for (const Primitive& primitive : mesh.primitives) {

@@ -12,8 +12,28 @@
 namespace gnomon::renderer {
 namespace {
 
-bool isSingular(const glm::dmat4& m) {
-    return !(std::abs(glm::determinant(glm::dmat3(m))) > 1.0e-30);
+// True where what hangs on a node can not be told from its place at rest: the inverse is missing, or would blow up the
+// rounding of a float more than a hundred times.
+bool hidesWhatHangsOnIt(const glm::dmat4& m) {
+    constexpr double kWorstCondition = 100.0;
+    const auto norm = [](const glm::dmat3& a) {
+        return std::sqrt(glm::dot(a[0], a[0]) + glm::dot(a[1], a[1]) + glm::dot(a[2], a[2]));
+    };
+    const double size = norm(glm::dmat3(m));
+    if (!(size > 0.0)) return true;
+    const glm::dmat3 scaled = glm::dmat3(m) / size;
+    if (!(std::abs(glm::determinant(scaled)) > 1.0e-30)) return true;
+    return !(norm(glm::inverse(scaled)) < kWorstCondition);
+}
+
+// Equal but for the rounding of floats.
+template <class Vector>
+bool isNear(const Vector& a, const Vector& b) {
+    return glm::length(a - b) <= 1.0e-6 * glm::length(b);
+}
+
+bool isNear(const glm::dmat4& a, const glm::dmat4& b) {
+    return isNear(a[0], b[0]) && isNear(a[1], b[1]) && isNear(a[2], b[2]) && isNear(a[3], b[3]);
 }
 
 glm::dmat4 localTransform(const Node& node) {
@@ -58,12 +78,21 @@ void apply(const AnimationChannel& channel, double seconds, Node& node) {
     }
 }
 
-// Where `rest`, given in the world at rest, comes to lie when its node moves.
+// Where `rest`, given in the world at rest, comes to lie when its node moves. What stands where its node stands follows
+// the node alone, so that nothing of the pose at rest is left in it.
 glm::dmat4 moved(const Pose& pose, std::uint32_t node, const glm::dmat4& rest) {
     const glm::dmat4& now = pose.worldFromNode[node];
     const glm::dmat4& before = pose.worldFromNodeAtRest[node];
     if (now == before) return rest;
-    return isSingular(before) ? now : now * glm::inverse(before) * rest;
+    return isNear(rest, before) || hidesWhatHangsOnIt(before) ? now : now * glm::inverse(before) * rest;
+}
+
+// The node's z axis, unit. A scale of zero along it hides it; the two other axes still tell it. Zero where they do not.
+glm::dvec3 alongAxis(const glm::dmat4& node) {
+    const glm::dvec3 x(node[0]), y(node[1]), z(node[2]);
+    const glm::dvec3 axis = z != glm::dvec3(0.0) ? z : glm::cross(x, y);
+    const double length = glm::length(axis);
+    return length > 0.0 ? axis / length : glm::dvec3(0.0);
 }
 
 SceneLight posedLight(const Pose& pose, const SceneLight& light) {
@@ -71,16 +100,14 @@ SceneLight posedLight(const Pose& pose, const SceneLight& light) {
     const glm::dmat4& before = pose.worldFromNodeAtRest[light.node];
     if (now == before) return light;
     SceneLight out = light;
-    glm::dvec3 direction = -glm::dvec3(now[2]);
-    if (isSingular(before)) {
-        out.position = glm::vec3(now[3]);
-    } else {
-        const glm::dmat4 motion = now * glm::inverse(before);
-        out.position = glm::vec3(motion * glm::dvec4(glm::dvec3(light.position), 1.0));
-        direction = glm::dmat3(motion) * glm::dvec3(light.direction);
-    }
+    const bool hidden = hidesWhatHangsOnIt(before);
+    const glm::dmat4 motion = hidden ? glm::dmat4(1.0) : now * glm::inverse(before);
+    const glm::dvec4 position(glm::dvec3(light.position), 1.0);
+    out.position = glm::vec3(hidden || isNear(position, before[3]) ? now[3] : motion * position);
+    glm::dvec3 direction = glm::dmat3(motion) * glm::dvec3(light.direction);
+    if (hidden || isNear(-alongAxis(before), glm::dvec3(light.direction))) direction = -alongAxis(now);
     const double length = glm::length(direction);
-    if (length > 1.0e-12) out.direction = glm::vec3(direction / length);
+    if (length > 0.0) out.direction = glm::vec3(direction / length);
     return out;
 }
 

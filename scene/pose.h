@@ -6,6 +6,7 @@
 // Everything is computed on the CPU, so that whatever draws or traces the scene meets the very same triangles.
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <stdexcept>
 #include <vector>
@@ -23,6 +24,9 @@ inline constexpr float kFarthestUnits = 1.0e15f;
 /// How far a light or camera may be from the origin along any axis: floats farther out are coarser than anything a
 /// picture could show, and no frame's origin helps.
 inline constexpr float kFarthestMetres = 1.0e8f;
+
+/// Times at which an animation's extent is looked at, besides its keys.
+inline constexpr std::uint32_t kExtentSamples = 16;
 
 /// Vertices of one primitive of one instance, in the space of Pose::worldFromObject. Same counts as the primitive's.
 struct PosedPrimitive {
@@ -60,8 +64,19 @@ void poseAt(const Scene& scene, double timeSeconds, Pose& pose);
 /// Without any animation.
 [[nodiscard]] Pose restPose(const Scene& scene);
 
-/// World bounds of everything drawn, at rest and at `samples` times over the longest animation that plays.
-[[nodiscard]] Bounds animatedBounds(const Scene& scene, std::uint32_t samples);
+/// Where everything drawn and each light comes to be while the animations play. The pose at rest does not count, as
+/// long as something plays: a file may store anything there. Nor do moments that throw something beyond
+/// kFarthestMetres.
+struct AnimatedExtent {
+    Bounds drawn;
+    std::vector<Bounds> lights;  ///< of their positions, one per light
+};
+/// From `samples` times over the longest animation that plays, and from key times.
+[[nodiscard]] AnimatedExtent animatedExtent(const Scene& scene, std::uint32_t samples = kExtentSamples);
+
+/// The poses that animatedExtent() looks at, one after another: those at its times, or the one at rest where nothing
+/// plays or no time can be posed.
+void forEachPose(const Scene& scene, std::uint32_t samples, const std::function<void(const Pose&)>& work);
 
 /// A camera of the scene, moved by its node.
 [[nodiscard]] SceneCamera posedCamera(const Scene& scene, const Pose& pose, const SceneCamera& camera);

@@ -15,6 +15,7 @@
 #include "gnomon/result.h"
 #include "gnomon/settings.h"
 #include "scene/animation.h"
+#include "scene/flatness.h"
 
 namespace gnomon::renderer {
 
@@ -65,6 +66,11 @@ struct Material {
     bool subsurface = false;
 };
 
+/// The least alpha that is opaque; what is below is cut out. Equal to the cut-off is opaque (glTF 2.0, section 3.9.4).
+/// Interpolated and half-precision alphas miss a constant by a few roundings, so an eighth of a step of eight bits is
+/// granted: more than any rounding, less than a texture can tell apart.
+[[nodiscard]] float leastOpaqueAlpha(const Material& material);
+
 // One indexed triangle list with one material. All attribute arrays have the length of positions or are empty.
 struct Primitive {
     std::vector<glm::vec3> positions;
@@ -96,7 +102,7 @@ struct Instance {
 
 /// True when the instance turns clockwise triangles into counter-clockwise ones: swap the front face when drawing it.
 [[nodiscard]] inline bool isMirrored(const Instance& instance) {
-    return glm::determinant(glm::mat3(instance.worldFromObject)) < 0.0f;
+    return turnsWinding(glm::dmat3(glm::mat3(instance.worldFromObject)));
 }
 
 enum class LightKind : std::uint8_t { Point, Spot, Directional };
@@ -112,6 +118,7 @@ struct SceneLight {
     float rangeMetres = 0.0f;                                    // 0: none given
     float innerConeAngle = 0.0f, outerConeAngle = 0.785398163f;  // half-angles, radians
     float sourceRadius = 0.0f;                                   // metres, directional: radians; 0: none given
+    bool rangeIsGuessed = false, sourceIsGuessed = false;        // by completeLights(); a guessed range only culls
     bool casts = true;
     float biasMetres = -1.0f;      // depth bias; below 0: the renderer's default
     std::optional<Filter> filter;  // of its shadow; none: the renderer's choice
@@ -126,7 +133,8 @@ struct SceneCamera {
     float orthographicHalfHeight = 1.0f;  // metres
     float nearMetres = 0.05f;
     float farMetres = std::numeric_limits<float>::infinity();
-    std::uint32_t node = kNone;  // moves with this node
+    float widthOverHeight = 0.0f;  // of what it shows at least; 0: as wide as the picture
+    std::uint32_t node = kNone;    // moves with this node
 };
 
 struct Scene {
@@ -146,14 +154,23 @@ struct Scene {
     std::vector<std::string> notes;               // what a loader left out or repaired, one sentence each
 };
 
+/// The camera for a picture of so many pixels. A picture that is narrower than the camera's own shape shows its whole
+/// width and more above and below; a wider one shows more at the sides. Nothing that the camera sees is cropped.
+[[nodiscard]] SceneCamera fittedCamera(const SceneCamera& camera, std::uint32_t widthPx, std::uint32_t heightPx);
+
 /// World bounds of everything that is drawn, at rest; empty for a scene without geometry.
 Bounds worldBounds(const Scene& scene);
 
 /// Triangles drawn, every instance counted.
 std::uint64_t triangleCount(const Scene& scene);
 
-/// Gives every light that lacks them a range and a source size, by the rule that docs/scenes.md states.
+/// Gives every light that lacks them a range and a source size, by the rules that docs/scenes.md states, with a note
+/// for local lights.
 void completeLights(Scene& scene);
+
+/// A scene that has geometry and no light at all gets a sun, so that something is seen, and a note that says so. It
+/// comes from the left and above of defaultCamera(), and is five to ten times as strong as the scene's ambient light.
+void lightIfDark(Scene& scene);
 
 /// The scene's first camera; without one, a camera that frames the bounds from the front right and above.
 SceneCamera defaultCamera(const Scene& scene);

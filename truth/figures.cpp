@@ -39,9 +39,17 @@ void add(Figures& f, const PixelTruth& truth, float result, bool soft) {
     f.leak += error == PairError::Leak || (error == PairError::ContactLeak && !truth.edge);
     f.contactLeak += error == PairError::ContactLeak;
     f.edgeError += error == PairError::EdgeError || (error == PairError::ContactLeak && truth.edge);
+    f.penumbraError += error == PairError::PenumbraError;
+    f.undecided += soft && !truth.edge && truth.soft >= kSoftDark && truth.soft <= kSoftLit;
     f.faintAcne += isFaintAcne(truth, result, soft);
     f.faintLeak += isFaintLeak(truth, result, soft);
-    if (!truth.subset || !(truth.soft >= 0.0f)) return;
+    const bool hasSoft = truth.subset && truth.soft >= 0.0f;
+    if (!soft || hasSoft) {
+        const float right = soft ? truth.soft : truth.hard == HardTruth::Lit ? 1.0f : 0.0f;
+        ++f.comparedPairs;
+        f.absoluteError += std::abs(static_cast<double>(result) - static_cast<double>(right));
+    }
+    if (!hasSoft) return;
     ++f.softPairs;
     if (!inPenumbra(truth)) return;
     const double difference = static_cast<double>(result) - static_cast<double>(truth.soft);
@@ -105,6 +113,8 @@ PairError errorOf(const PixelTruth& truth, float result, bool soft) {
         if (truth.blockerMetres < kContactMetres) return PairError::ContactLeak;
         return truth.edge ? PairError::EdgeError : PairError::Leak;
     }
+    const bool between = soft && !isLit(truth, soft) && !isDark(truth, soft);
+    if (between && std::abs(result - truth.soft) > 0.5f) return PairError::PenumbraError;
     return PairError::None;
 }
 
@@ -119,6 +129,8 @@ bool isFaintLeak(const PixelTruth& truth, float result, bool soft) {
 Figures& Figures::operator+=(const Figures& o) {
     pairs += o.pairs, away += o.away, lit += o.lit, dark += o.dark, edges += o.edges, contacts += o.contacts;
     faintAcne += o.faintAcne, faintLeak += o.faintLeak;
+    penumbraError += o.penumbraError, undecided += o.undecided;
+    comparedPairs += o.comparedPairs, absoluteError += o.absoluteError;
     acne += o.acne, leak += o.leak, contactLeak += o.contactLeak, edgeError += o.edgeError;
     softPairs += o.softPairs, penumbraPairs += o.penumbraPairs;
     squaredError += o.squaredError, fourthPowers += o.fourthPowers;
@@ -148,6 +160,19 @@ LightFigures& LightFigures::operator+=(const LightFigures& other) {
     opaque += other.opaque;
     subsurface += other.subsurface;
     return *this;
+}
+
+double LightFigures::setAside() const {
+    const std::uint64_t all = opaque.pairs + subsurface.pairs;
+    const std::uint64_t aside = opaque.edges + opaque.undecided + subsurface.pairs;
+    return all == 0 ? 0.0 : static_cast<double>(aside) / static_cast<double>(all);
+}
+
+double LightFigures::wrongOfSetAside() const {
+    const std::uint64_t aside = opaque.edges + opaque.undecided + subsurface.pairs;
+    const std::uint64_t wrong = opaque.edgeError + opaque.penumbraError + subsurface.acne + subsurface.leak +
+                                subsurface.edgeError + subsurface.penumbraError;
+    return aside == 0 ? 0.0 : static_cast<double>(wrong) / static_cast<double>(aside);
 }
 
 LightFigures figuresOf(const LightTruth& truth, std::span<const float> result, bool soft) {

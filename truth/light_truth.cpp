@@ -76,7 +76,7 @@ private:
         const glm::dvec3 d = p - source_.position;
         const double distance = glm::length(d);
         if (distance > static_cast<double>(desc_.light.rangeMetres)) return false;
-        const double outer = std::min(static_cast<double>(desc_.light.outerConeAngle), 1.55);
+        const double outer = static_cast<double>(desc_.light.outerConeAngle);
         return source_.kind != LightKind::Spot || glm::dot(d, source_.direction) >= std::cos(outer) * distance;
     }
 

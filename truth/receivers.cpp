@@ -15,8 +15,9 @@ struct PixelRays {
     bool orthographic;
     std::uint32_t widthPx, heightPx;
 
-    PixelRays(const SceneCamera& camera, const glm::dvec3& origin, std::uint32_t width, std::uint32_t height)
-        : orthographic(camera.orthographic), widthPx(width), heightPx(height) {
+    PixelRays(const SceneCamera& given, const glm::dvec3& origin, std::uint32_t width, std::uint32_t height)
+        : orthographic(given.orthographic), widthPx(width), heightPx(height) {
+        const SceneCamera camera = fittedCamera(given, width, height);
         const glm::dmat4 world(camera.worldFromCamera);
         eye = glm::dvec3(world[3]) - origin;
         z = glm::normalize(glm::dvec3(world[2]));

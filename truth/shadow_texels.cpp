@@ -30,9 +30,8 @@ std::size_t faceOf(const glm::dvec3& fromLight) {
 double shadowTexelMetres(std::span<const ShadowView> views, LightKind kind, const glm::dvec3& lightPosition,
                          const glm::dvec3& position) {
     if (views.empty()) return 0.0;
-    if (kind == LightKind::Spot) return texelAt(views[0], clipOf(views[0], position));
-    if (kind == LightKind::Point) {
-        const std::size_t face = faceOf(position - lightPosition);
+    if (kind != LightKind::Directional) {
+        const std::size_t face = views.size() == 1 ? 0 : faceOf(position - lightPosition);
         return face < views.size() ? texelAt(views[face], clipOf(views[face], position)) : 0.0;
     }
     // The last tenth of a cascade is blended with the next one.

@@ -22,9 +22,6 @@ constexpr double kFloatError = 1e-6;
 // stand above the point's own surface.
 constexpr double kStrictNear = 1e3;
 
-// As the renderer has it: flatter instances are not drawn.
-constexpr double kLeastDeterminant = 1e-30;
-
 double largest(const glm::dvec3& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
@@ -194,14 +191,14 @@ void TracedScene::append(const Primitive& primitive, const std::vector<glm::vec3
     const TextureUse& use = material.baseColourTexture;
     const bool masked = material.alphaMode != AlphaMode::Opaque;
     const glm::dmat3 linear(worldFromObject);
-    const double determinant = glm::determinant(linear);
+    const bool drawn = hasArea(linear), mirrored = turnsWinding(linear);
     const double meshMetres = largestCoordinate(positions) *
                               std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
     for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
         Triangle triangle;
         triangle.material = primitive.material;
-        triangle.drawn = std::abs(determinant) > kLeastDeterminant;
-        triangle.mirrored = determinant < 0.0;
+        triangle.drawn = drawn;
+        triangle.mirrored = mirrored;
         triangle.meshMetres = static_cast<float>(meshMetres);
         MaskCorners mask;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -284,8 +281,7 @@ bool TracedScene::isCutOut(const Triangle& triangle, const glm::dvec3& barycentr
     alpha *= static_cast<double>(material.baseColour.a);
     const TextureUse& use = material.baseColourTexture;
     if (use.image != kNone) alpha *= sampledAlpha(scene_.images[use.image], use, uv);
-    const double cutoff = material.alphaMode == AlphaMode::Blend ? 0.5 : static_cast<double>(material.alphaCutoff);
-    return alpha < cutoff;
+    return alpha < static_cast<double>(leastOpaqueAlpha(material));
 }
 
 bool TracedScene::blocked(const ShadowRay& ray) const {

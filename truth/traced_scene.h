@@ -12,7 +12,7 @@
 // - The triangle that the point lies on is left out by its number.
 // Limits: a triangle is taken to be a few float steps larger where the ray passes its edge far from its start. So no
 // light falls through seams that Embree saw a step beside the true ones. Alpha masks are read at the finest mip.
-// Instances that a flat matrix makes nothing of are not drawn, and do not block.
+// Instances whose matrix leaves lines or points alone (scene/flatness.h) do not block.
 
 #include <array>
 #include <cstdint>

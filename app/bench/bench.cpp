@@ -74,6 +74,7 @@ private:
 renderer::FrameSettings settingsOf(const Session& session, const Way& way) {
     renderer::FrameSettings settings = session.rendererDesc().frame;
     settings.inlineVariant.walksMasks = false;
+    settings.history = session.settings().history != "off";
     if (!way.bias.empty()) setBias(way.bias, settings);
     return settings;
 }

@@ -39,6 +39,7 @@ Kind kindOf(const PixelTruth& truth, float result, bool soft) {
         case PairError::ContactLeak:
             return kContact;
         case PairError::EdgeError:
+        case PairError::PenumbraError:
             return kEdge;
         case PairError::None:
         case PairError::NotCounted:

@@ -130,7 +130,7 @@ void describeSweep(const std::vector<SweptSetting>& sweep, Json& out) {
     Json rows = Json::array();
     for (const SweptSetting& row : sweep) {
         Json figures = {{"bias", row.setting.bias}, {"constant", row.setting.constant}, {"slope", row.setting.slope}};
-        figures.update(describe(row.figures.opaque));
+        figures.update(describe(row.figures));
         figures["subsurface"] = describe(row.figures.subsurface);
         rows.push_back(figures);
     }

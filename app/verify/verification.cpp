@@ -46,7 +46,8 @@ Verification::Verification(const Session& session, const VerifyOptions& options,
       extent_{session.rendererDesc().frame.widthPx, session.rendererDesc().frame.heightPx},
       renderer_(session.device(), session.scene(), session.rendererDesc()) {
     camera_.node = renderer::kNone;
-    drawFrom(camera_);
+    const std::uint64_t frame = drawFrom(camera_);
+    lightsLeftOut_ = renderer_.report(frame).statistics.lights.dropped;
     for (const std::uint32_t index : wantedLights()) lights_.push_back({index, truthDescOf(index), {}});
     if (options.maps.empty()) return;
     const renderer::HdrPicture linear = renderer_.readPicture();
@@ -66,9 +67,10 @@ std::vector<std::uint32_t> Verification::wantedLights() const {
     return wanted;
 }
 
-void Verification::drawFrom(const renderer::SceneCamera& camera) {
-    renderer_.renderFrame(camera, renderer::ShadowMode::Deferred, options_.settings.time);
+std::uint64_t Verification::drawFrom(const renderer::SceneCamera& camera) {
+    const std::uint64_t frame = renderer_.renderFrame(camera, renderer::ShadowMode::Deferred, options_.settings.time);
     receivers_ = receiversOf(traced_, camera, extent_.widthPx, extent_.heightPx, renderer_.readTriangleIds());
+    return frame;
 }
 
 void Verification::drawSetting(std::size_t setting) {
@@ -109,6 +111,7 @@ void Verification::say(const std::string& sentence, bool last) {
 
 VerifyResult Verification::run() {
     VerifyResult result;
+    result.lightsLeftOut = lightsLeftOut_;
     if (!others_.empty())
         result.sweep.push_back({chosenSetting(options_.settings.bias, session_.rendererDesc().frame), {}});
     for (const BiasSetting& setting : others_) result.sweep.push_back({setting, {}});

@@ -30,7 +30,8 @@ private:
     };
 
     [[nodiscard]] std::vector<std::uint32_t> wantedLights() const;
-    void drawFrom(const renderer::SceneCamera& camera);
+    /// Returns the frame's number.
+    std::uint64_t drawFrom(const renderer::SceneCamera& camera);
     void drawSetting(std::size_t setting);
     void checkShadowViews() const;
     [[nodiscard]] renderer::LightTruthDesc truthDescOf(std::uint32_t index) const;
@@ -57,6 +58,7 @@ private:
     std::unique_ptr<VerifyMaps> maps_;  // where asked for
     Stopwatch watch_;
     double said_ = -1.0;
+    std::uint32_t lightsLeftOut_ = 0;  // visible ones, of the chosen camera
 };
 
 }  // namespace gnomon::app

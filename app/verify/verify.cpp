@@ -30,10 +30,7 @@ std::vector<BiasSetting> sweepOf(const VerifyOptions& options) {
 
 void verifyWithin(const renderer::VulkanInstance& instance, const VerifyOptions& options) {
     const Session session(instance, options.settings);
-    for (const std::uint32_t light : options.lights)
-        if (light >= session.scene().lights.size())
-            throw UsageError(fmt::format("There is no light #{}: the scene has {}, counted from 0.", light,
-                                         session.scene().lights.size()));
+    for (const std::uint32_t light : options.lights) checkLight(light, session.scene());
     const Stopwatch setUp;
     Verification verification(session, options, sweepOf(options));
     sayProgress(fmt::format("Drawn, and made ready to trace, in {:.1f} s.", setUp.seconds()));

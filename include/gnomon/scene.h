@@ -48,7 +48,7 @@ struct Light {
     /// Candela (lux for directional lights), at least 0. 0: the light is off. Else it serves two things only: a missing
     /// range, and the choice among too many lights. What the host's shader makes of the light is its own business.
     float intensity = 1.0f;
-    /// Spot: half-angle of the cone in radians, above 0 and below pi/2 (checked: at most 1.55).
+    /// Spot: half-angle of the cone in radians, above 0 and at most pi/2.
     float outerConeAngle = 0.785398163f;
     /// Radius of the source in metres, at least 0; directional lights: angular radius in radians, at most 0.5. Drives
     /// the penumbra.
@@ -72,16 +72,18 @@ struct Light {
     std::uint8_t pcssPreset = 0;
 };
 
-/// The shadow views of one light, in a row. Spots have one, point lights six (+X -X +Y -Y +Z -Z), directional lights
-/// one per cascade, 1 to 8, from the nearest on.
+/// The shadow views of one light, in a row. Point lights have six (+X -X +Y -Y +Z -Z), spots have one that holds their
+/// cone, or six like point lights, directional lights one per cascade, 1 to 8, from the nearest on.
+/// A flat view's texels grow with the square of the cosine towards its border. So six are better for wide cones: from
+/// a tangent of the half-angle of sqrt(6) on (68 degrees) they need fewer texels for the same sharpness along the axis.
 struct LightShadowViews {
     std::uint32_t first = kNoShadowViews;  ///< index into FrameDesc::shadowViews; kNoShadowViews: it casts nothing
     std::uint32_t count = 0;
 };
 
 /// One view of a light, drawn by the host into a rectangle of one of its shadow atlases (D32 or D16, any age).
-/// A spot needs one view that holds its cone; a directional light one orthographic view per cascade; a point light six,
-/// of 90 degrees or a little more: where the rectangle reaches a few texels beyond 90 degrees, filters are seamless
+/// A spot needs one view that holds its cone; a directional light one orthographic view per cascade; a point light or a
+/// wide spot six, of 90 degrees or a little more: where the rectangle reaches a few texels beyond 90 degrees, filters are seamless
 /// across faces.
 struct ShadowView {
     /// Perspective: clip w is the distance along the shadow view's axis in metres. Orthographic: it is 1. Near and far
@@ -95,6 +97,11 @@ struct ShadowView {
     float farMetres = std::numeric_limits<float>::infinity();  ///< infinity allowed for perspective views
     bool orthographic = false;
     DeviceDepth deviceDepth = DeviceDepth::ReversedZ;
+    /// Limits Light::biasMetres by what this view sees, at least 0. Perspective: a share of the receiver's distance
+    /// along the view's axis. Orthographic: metres. Infinity: the light's bias is taken as it is. The reference
+    /// renderer gives a five-hundredth, and of a cascade that of half its width: so 2 mm are never much, however
+    /// small the scene is.
+    float mostBias = std::numeric_limits<float>::infinity();
     /// False promises that the View's previous frame had this very rectangle, and that its texels are still the same.
     /// Its shadow bounds are then kept. Set it true after a frame in which this shadow view was not given.
     bool changed = true;

@@ -53,15 +53,16 @@ glm::dvec3 frameOriginOf(const SceneCamera& camera) {
     return glm::round(position / kGrid) * kGrid;
 }
 
-Camera cameraOf(const SceneCamera& camera, const glm::dvec3& origin, std::uint32_t widthPx, std::uint32_t heightPx,
+Camera cameraOf(const SceneCamera& given, const glm::dvec3& origin, std::uint32_t widthPx, std::uint32_t heightPx,
                 DeviceDepth depth) {
+    const SceneCamera camera = fittedCamera(given, widthPx, heightPx);
     // Rigid, whatever scale the file's nodes have.
-    const glm::dmat4 given(camera.worldFromCamera);
-    const glm::dvec3 z = glm::normalize(glm::dvec3(given[2]));
-    const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(given[1]), z));
+    const glm::dmat4 placed(camera.worldFromCamera);
+    const glm::dvec3 z = glm::normalize(glm::dvec3(placed[2]));
+    const glm::dvec3 x = glm::normalize(glm::cross(glm::dvec3(placed[1]), z));
     const glm::dvec3 y = glm::cross(z, x);
     const glm::dmat4 worldFromView(glm::dvec4(x, 0.0), glm::dvec4(y, 0.0), glm::dvec4(z, 0.0),
-                                   glm::dvec4(glm::dvec3(given[3]) - origin, 1.0));
+                                   glm::dvec4(glm::dvec3(placed[3]) - origin, 1.0));
     Camera result;
     result.deviceDepth = depth;
     const bool reversed = depth == DeviceDepth::ReversedZ;

@@ -12,7 +12,8 @@ namespace gnomon::renderer {
 /// is within 512 m of it. A float step there is at most 0.06 mm.
 glm::dvec3 frameOriginOf(const SceneCamera& camera);
 
-/// Matrices relative to `origin`, for an extent in pixels. Clip space is Vulkan's, y down.
+/// Matrices relative to `origin`, for the camera as fittedCamera() has it, for an extent in pixels. Clip space is
+/// Vulkan's, y down.
 Camera cameraOf(const SceneCamera& camera, const glm::dvec3& origin, std::uint32_t widthPx, std::uint32_t heightPx,
                 DeviceDepth depth);
 

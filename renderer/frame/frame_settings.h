@@ -2,6 +2,7 @@
 // All that may change from one frame of a Renderer to the next, as one value.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "gnomon/scene.h"
@@ -11,6 +12,9 @@
 
 namespace gnomon::renderer {
 
+/// The paper's 2 mm.
+inline constexpr float kBiasMetres = 0.002f;
+
 enum class ShadowMode : std::uint8_t { Deferred, Inline, Off };
 
 struct FrameSettings {
@@ -19,12 +23,16 @@ struct FrameSettings {
     ShadowSettings shadows = {.shadowBounds = true};
     /// Filters of the scene's lights that name none: they take turns, light i has filters[i % size].
     std::vector<Filter> filters = {Filter::Pcss};
-    float biasMetres = 0.002f;           ///< of lights that state none
+    /// Depth bias of lights that state none, taken as it is. Empty: kBiasMetres, limited by what each shadow view sees.
+    std::optional<float> biasMetres;
     float subsurfaceBiasMetres = 0.02f;  ///< with drawing.subsurfaceFronts
     ShadowDrawing drawing;
     bool readFaceNormals = true;  ///< off: they are derived from the depth buffer
     DeviceDepth deviceDepth = DeviceDepth::ReversedZ;
     InlineVariant inlineVariant;
+    /// Shadow resolutions and places in the atlas may stay what they were in earlier frames where that is nearly right.
+    /// Steadier and faster in motion. Off: a frame follows from scene, time and settings alone.
+    bool history = false;
 
     bool operator==(const FrameSettings&) const = default;
 };

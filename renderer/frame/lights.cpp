@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numbers>
 
 #include "gpu_interface/numbers.h"
 
@@ -24,19 +25,18 @@ Filter filterOf(const SceneLight& light, std::size_t index, const FrameSettings&
     return light.filter ? *light.filter : settings.filters[index % settings.filters.size()];
 }
 
-std::uint32_t viewsOf(LightType type, const ShadowPlan& plan) {
-    switch (type) {
-        case LightType::Point:
-            return gpu::kPointLightFaces;
-        case LightType::Spot:
-            return 1;
-        case LightType::Directional:
-            return plan.cascadeCount;
-    }
-    return 0;
+/// From `first` on, those of one light.
+std::uint32_t viewsFrom(std::uint32_t first, const ShadowPlan& plan) {
+    std::uint32_t count = 1;
+    while (first + count < plan.views.size() && plan.views[first + count].light == plan.views[first].light) ++count;
+    return count;
 }
 
 }  // namespace
+
+std::optional<float> statedBias(const SceneLight& light, const FrameSettings& settings) {
+    return light.biasMetres >= 0.0f ? light.biasMetres : settings.biasMetres;
+}
 
 std::vector<Light> libraryLights(std::span<const SceneLight> lights, const glm::dvec3& origin,
                                  const FrameSettings& settings) {
@@ -52,9 +52,9 @@ std::vector<Light> libraryLights(std::span<const SceneLight> lights, const glm::
         std::memcpy(l.direction, &light.direction, sizeof(l.direction));
         l.rangeMetres = light.rangeMetres;
         l.intensity = light.intensity * std::max({light.colour.x, light.colour.y, light.colour.z});
-        l.outerConeAngle = std::min(light.outerConeAngle, 1.55f);
+        l.outerConeAngle = std::min(light.outerConeAngle, 0.5f * std::numbers::pi_v<float>);
         l.sourceRadius = light.sourceRadius;
-        l.biasMetres = light.biasMetres >= 0.0f ? light.biasMetres : settings.biasMetres;
+        l.biasMetres = statedBias(light, settings).value_or(kBiasMetres);
         l.casts = light.casts;
         l.filter = filterOf(light, i, settings);
         if (l.filter == Filter::Pcss)
@@ -83,13 +83,22 @@ void chooseCasters(std::span<const SceneLight> lights, const PreparedLights& pre
     for (const LightOnScreen& light : prepared.visible) out[light.light].casts = lights[light.light].casts;
 }
 
+void limitBiases(std::span<const SceneLight> lights, const FrameSettings& settings, std::span<PlannedView> views) {
+    for (PlannedView& planned : views) {
+        const SceneLight& light = lights[planned.light];
+        if (statedBias(light, settings)) continue;
+        const bool local = light.kind != LightKind::Directional;
+        planned.view.mostBias = local ? kMostBias : kMostBias * static_cast<float>(planned.cascade.halfExtent);
+    }
+}
+
 std::vector<LightShadowViews> lightViews(const PreparedLights& prepared, const ShadowPlan& plan) {
     std::vector<LightShadowViews> out;
     out.reserve(prepared.visible.size());
     for (const LightOnScreen& light : prepared.visible) {
         const std::uint32_t first = plan.firstView[light.light];
         out.push_back(first == kNoShadowViews ? LightShadowViews{}
-                                              : LightShadowViews{first, viewsOf(light.type, plan)});
+                                              : LightShadowViews{first, viewsFrom(first, plan)});
     }
     return out;
 }

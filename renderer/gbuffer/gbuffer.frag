@@ -42,19 +42,19 @@ vec3 perturbByDerivatives(vec3 n, vec3 mapped, vec2 uv, vec3 dpx, vec3 dpy, vec2
     return t * s * mapped.x + b * s * mapped.y + n * mapped.z;
 }
 
-vec3 shadingNormal(vec3 dpx, vec3 dpy, vec2 uv, vec2 duvx, vec2 duvy) {
+// Of the front, whichever side is seen: tangent, bitangent and normal belong to the front, and a back has them all
+// negated.
+vec3 frontNormal(vec3 dpx, vec3 dpy, vec2 uv, vec2 duvx, vec2 duvy) {
     vec3 n = normalize(normalWs);
-    if (!(dot(n, n) > 0.5)) n = faceNormalWs;  // not a number, or zero
-    else if (seesBack != 0u) n = -n;
+    if (!(dot(n, n) > 0.5)) n = seesBack != 0u ? -faceNormalWs : faceNormalWs;  // not a number, or zero
     if (!(dot(n, n) > 0.5)) n = vec3(0.0, 0.0, 1.0);
     if (!hasTexture(material.normalUse)) return n;
     vec3 mapped = texture(normalTexture, uv).xyz * 2.0 - 1.0;
     mapped.xy *= material.metallicRoughness.z;
     vec3 result;
     if (tangentWs.w != 0.0) {
-        const float side = seesBack != 0u ? -1.0 : 1.0;
         const vec3 t = normalize(tangentWs.xyz - n * dot(n, tangentWs.xyz));
-        result = t * mapped.x + cross(n, t) * (side * sign(tangentWs.w)) * mapped.y + n * mapped.z;
+        result = t * mapped.x + cross(n, t) * sign(tangentWs.w) * mapped.y + n * mapped.z;
     } else {
         // glTF's v grows downwards in the image while the map's y grows with -v.
         result = perturbByDerivatives(n, vec3(mapped.x, -mapped.y, mapped.z), uv, dpx, dpy, duvx, duvy);
@@ -71,11 +71,12 @@ void main() {
     const vec2 duvx = dFdx(normalUv), duvy = dFdy(normalUv);
     const vec2 baseUv = textureUv(material.baseColourUse, uv0, uv1);
     const vec4 base = material.baseColour * colour * texture(baseColourTexture, baseUv);
-    const vec3 n = shadingNormal(dpx, dpy, normalUv, duvx, duvy);
+    const vec3 front = frontNormal(dpx, dpy, normalUv, duvx, duvy);
+    const vec3 n = seesBack != 0u ? -front : front;
     const vec4 mr = texture(metallicRoughnessTexture, textureUv(material.metallicRoughnessUse, uv0, uv1));
     const vec3 emissive = texture(emissiveTexture, textureUv(material.emissiveUse, uv0, uv1)).rgb;
 #ifdef GNOMON_MASKED
-    if (base.a < material.emissiveAlphaCutoff.w) discard;
+    if (isCutOut(base.a)) discard;
 #endif
     const bool subsurface = (material.flags & kMaterialSubsurfaceBit) != 0u;
     outBaseColour = vec4(base.rgb, 1.0);

@@ -48,7 +48,9 @@ void main() {
     colour = pullColour(item, vertex);
     normalWs = face;
     if ((item.flags & kItemNormalsBit) != 0u) {
-        normalWs = normalize(transformNormal(item, unpackOctahedral(attributes[vertex * kAttributeWords])));
+        const vec3 n = transformNormal(item, unpackOctahedral(attributes[vertex * kAttributeWords]));
+        const float squared = dot(n, n);
+        if (squared > 0.0) normalWs = n * inversesqrt(squared);
     }
     tangentWs = vec4(0.0);
     if ((item.flags & kItemTangentsBit) != 0u) {

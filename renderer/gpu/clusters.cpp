@@ -63,6 +63,7 @@ ClusteredTriangles makeClusters(const std::vector<glm::vec3>& positions, const s
         };
         forEachVertex([&](const glm::vec3& p) { low = glm::min(low, p), high = glm::max(high, p); });
         cluster.centre = 0.5f * (low + high);
+        cluster.halfExtent = 0.5f * (high - low);
         float radius2 = 0.0f;
         forEachVertex(
             [&](const glm::vec3& p) { radius2 = std::max(radius2, glm::dot(p - cluster.centre, p - cluster.centre)); });

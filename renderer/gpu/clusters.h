@@ -1,5 +1,5 @@
 #pragma once
-// Splits a primitive into clusters: runs of neighbouring triangles with a bounding sphere, small enough to be culled
+// Splits a primitive into clusters: runs of neighbouring triangles with a bounding sphere and box, small enough to be culled
 // per view and large enough that a draw call per cluster costs nothing. Pure CPU.
 
 #include <cstdint>
@@ -13,8 +13,9 @@ inline constexpr std::uint32_t kClusterTriangles = 512;
 
 struct Cluster {
     std::uint32_t firstTriangle = 0, triangleCount = 0;
-    glm::vec3 centre{0.0f};  ///< object space
+    glm::vec3 centre{0.0f};  ///< object space; of the box and of the sphere
     float radius = 0.0f;
+    glm::vec3 halfExtent{0.0f};  ///< of the box along the axes
 };
 
 struct ClusteredTriangles {

@@ -5,6 +5,14 @@
 
 namespace gnomon::renderer {
 
+/// The bounds of a part of the scene: a sphere, and a box of any directions with the same centre.
+struct ScenePart {
+    glm::dvec3 centre{0.0};  ///< world
+    double radius = 0.0;
+    bool seen = false;          ///< the camera may see some of it
+    glm::dmat3 halfAxes{0.0};   ///< columns: from the centre to the middles of three faces of the box
+};
+
 /// Planes of a frustum around the frame's origin and, optionally, a sphere (a light's range).
 struct CullVolume {
     glm::dvec3 origin{0.0};    ///< world position that the planes are relative to

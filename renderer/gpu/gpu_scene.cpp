@@ -11,9 +11,8 @@ namespace gnomon::renderer {
 
 void GpuScene::placeItem(DrawItem& item) {
     const Geometry& geometry = geometries_[item.geometry];
-    const double determinant = glm::determinant(glm::dmat3(item.worldFromObject));
-    item.mirrored = determinant < 0.0;
-    item.hidden = !(std::abs(determinant) > 1e-30);
+    item.mirrored = turnsWinding(glm::dmat3(item.worldFromObject));
+    item.hidden = !hasArea(glm::dmat3(item.worldFromObject));
     // A bound of the largest stretch: the Frobenius norm; the column maximum would be too small under shear.
     const glm::dmat3 m(item.worldFromObject);
     const double columns[3] = {glm::length(m[0]), glm::length(m[1]), glm::length(m[2])};
@@ -172,6 +171,24 @@ void GpuScene::cull(const CullVolume& volume, std::span<const Candidate> candida
             clusters_[geometries_[item.geometry].firstCluster + candidate.worldCluster - item.firstWorldCluster];
         appendRange(out, candidate.item, cluster.firstTriangle, cluster.triangleCount);
     }
+}
+
+std::vector<ScenePart> GpuScene::parts(const CullVolume& frustum) const {
+    std::vector<ScenePart> out;
+    for (const DrawItem& item : items_) {
+        if (item.hidden) continue;
+        const bool itemSeen = frustum.mayHold(item.centre, item.radius);
+        const Geometry& geometry = geometries_[item.geometry];
+        const glm::dmat3 linear(item.worldFromObject);
+        for (std::uint32_t c = 0; c < item.clusterCount; ++c) {
+            const WorldSphere& sphere = worldClusters_[item.firstWorldCluster + c];
+            const glm::dvec3 half(clusters_[geometry.firstCluster + c].halfExtent);
+            const bool seen = itemSeen && frustum.mayHold(sphere.centre, sphere.radius);
+            out.push_back({sphere.centre, static_cast<double>(sphere.radius), seen,
+                           glm::dmat3(linear[0] * half.x, linear[1] * half.y, linear[2] * half.z)});
+        }
+    }
+    return out;
 }
 
 const DrawItem* GpuScene::itemOfTriangle(std::uint32_t triangleId) const {

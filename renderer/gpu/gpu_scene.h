@@ -37,7 +37,7 @@ struct DrawItem {
     std::uint32_t material = 0;
     std::uint32_t firstTriangleId = 0, triangleCount = 0;
     bool mirrored = false;           ///< the instance's matrix turns the winding around
-    bool hidden = false;             ///< the matrix has no inverse: there is nothing to see
+    bool hidden = false;             ///< the matrix leaves lines or points: there is nothing to see
     bool moved = false;              ///< since the scene was made
     std::uint32_t deformed = kNone;  ///< index into Pose::deformed
     std::uint32_t firstWorldCluster = 0, clusterCount = 0;
@@ -72,8 +72,6 @@ public:
     /// Moves and deforms whatever differs from the last pose (at first: the scene at rest). The pose must be of the
     /// same scene. Takes effect with the next recordTransforms().
     void setPose(const Pose& pose);
-    /// How far from a place anything reaches that has moved since the scene was made.
-    [[nodiscard]] double reachOfMoved(const glm::dvec3& from) const;
     /// Writes the matrices relative to `origin`, and vertices, where they changed. Outside of rendering, before any
     /// drawing of the frame. Frames in flight are safe, up to kFramesInFlight: the order on the queue keeps old frames'
     /// matrices and vertices until they are done.
@@ -94,6 +92,9 @@ public:
     };
     void candidates(const glm::dvec3& centre, float radius, std::vector<Candidate>& out) const;
     void cull(const CullVolume& volume, std::span<const Candidate> candidates, std::vector<DrawRange>& out) const;
+
+    /// All parts as they stand now; seen are those that `frustum` may hold.
+    [[nodiscard]] std::vector<ScenePart> parts(const CullVolume& frustum) const;
 
     [[nodiscard]] const std::vector<DrawItem>& items() const { return items_; }
     [[nodiscard]] const std::vector<MaterialTraits>& materials() const { return traits_; }

@@ -46,6 +46,7 @@ bool GpuScene::takeVertices(const PosedPrimitive& posed, Deformed& deformed) {
     const Geometry& geometry = geometries_[deformed.geometry];
     Cluster& cluster = clusters_[geometry.firstCluster];
     cluster.centre = glm::vec3(glm::dvec3(posed.bounds.centre()) - geometry.offset);
+    cluster.halfExtent = 0.5f * (posed.bounds.max - posed.bounds.min);
     cluster.radius = posed.bounds.radius() * (1.0f + 1e-6f) + 1e-6f * glm::length(posed.bounds.centre());
     return true;
 }
@@ -68,13 +69,6 @@ void GpuScene::setPose(const Pose& pose) {
         transformsDirty_ = transformsDirty_ || moves;
     }
     if (!any) --castersRevision_;
-}
-
-double GpuScene::reachOfMoved(const glm::dvec3& from) const {
-    double reach = 0.0;
-    for (const DrawItem& item : items_)
-        if (item.moved && !item.hidden) reach = std::max(reach, glm::length(item.centre - from) + item.radius);
-    return reach;
 }
 
 void GpuScene::recordVertices(VkCommandBuffer commands) {

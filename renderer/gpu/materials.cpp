@@ -25,8 +25,7 @@ GpuTextureUse packUse(const TextureUse& use) {
 GpuMaterial packMaterial(const Material& material) {
     GpuMaterial out{};
     out.baseColour = material.baseColour;
-    const float cutoff = material.alphaMode == AlphaMode::Blend ? 0.5f : material.alphaCutoff;
-    out.emissiveAlphaCutoff = glm::vec4(material.emissive, cutoff);
+    out.emissiveAlphaCutoff = glm::vec4(material.emissive, leastOpaqueAlpha(material));
     out.metallicRoughness = {material.metallic, material.roughness, material.normalScale, 0.0f};
     out.baseColourUse = packUse(material.baseColourTexture);
     out.metallicRoughnessUse = packUse(material.metallicRoughnessTexture);

@@ -44,7 +44,7 @@ struct GpuTextureUse {
 
 struct GpuMaterial {
     vec4 baseColour;           // linear
-    vec4 emissiveAlphaCutoff;  // xyz emissive, w cut-off
+    vec4 emissiveAlphaCutoff;  // xyz emissive, w the least alpha that is opaque
     vec4 metallicRoughness;    // x metallic, y roughness, z normal scale, w unused
     GpuTextureUse baseColourUse, metallicRoughnessUse, normalUse, emissiveUse;
     GNOMON_UINT flags, reserved0, reserved1, reserved2;

@@ -21,11 +21,15 @@ vec3 transformPoint(GpuDrawItem item, vec3 p) {
 vec3 transformVector(GpuDrawItem item, vec3 v) {
     return vec3(dot(item.row0.xyz, v), dot(item.row1.xyz, v), dot(item.row2.xyz, v));
 }
-// By the cofactor matrix: the inverse transposed up to a positive factor, also for mirrored items.
+// By the cofactor matrix: the inverse transposed up to a positive factor, also for mirrored items, and for flat ones,
+// which have no inverse. Zero for a normal in the plane of a flat item. Not of unit length.
 vec3 transformNormal(GpuDrawItem item, vec3 n) {
-    const vec3 a = vec3(item.row0.x, item.row1.x, item.row2.x);
-    const vec3 b = vec3(item.row0.y, item.row1.y, item.row2.y);
-    const vec3 c = vec3(item.row0.z, item.row1.z, item.row2.z);
+    // Near 1 first: products of small numbers leave a float's range.
+    const vec3 most = max(max(abs(item.row0.xyz), abs(item.row1.xyz)), abs(item.row2.xyz));
+    const float scale = 1.0 / max(max(most.x, most.y), max(most.z, 1e-30));
+    const vec3 a = vec3(item.row0.x, item.row1.x, item.row2.x) * scale;
+    const vec3 b = vec3(item.row0.y, item.row1.y, item.row2.y) * scale;
+    const vec3 c = vec3(item.row0.z, item.row1.z, item.row2.z) * scale;
     const vec3 t = cross(b, c) * n.x + cross(c, a) * n.y + cross(a, b) * n.z;
     return (item.flags & kItemMirroredBit) != 0u ? -t : t;
 }

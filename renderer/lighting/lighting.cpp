@@ -11,16 +11,27 @@
 namespace gnomon::renderer {
 namespace {
 
+// Equal inner and outer angles make a sharp edge: it is this share of the cone's versine wide.
+constexpr double kLeastEdge = 1e-4;
+
+double versineOf(double angle) {
+    const double half = std::sin(0.5 * angle);
+    return 2.0 * half * half;
+}
+
 HostLight hostLightOf(const SceneLight& light) {
     HostLight h = {};
     const glm::vec3 intensity = light.colour * light.intensity;
     h.intensity = {intensity.x, intensity.y, intensity.z};
-    h.coneOffset = 1.0f;
+    if (light.kind != LightKind::Directional && !light.rangeIsGuessed) {
+        const double range = static_cast<double>(light.rangeMetres);
+        h.windowPerSquareMetre = static_cast<float>(1.0 / std::max(range * range, 1e-30));
+    }
     if (light.kind == LightKind::Spot) {
-        const float outer = std::cos(light.outerConeAngle);
-        const float inner = std::cos(std::min(light.innerConeAngle, light.outerConeAngle));
-        h.coneScale = 1.0f / std::max(inner - outer, 1e-3f);
-        h.coneOffset = -outer * h.coneScale;
+        const double outer = versineOf(static_cast<double>(light.outerConeAngle));
+        const double inner = versineOf(static_cast<double>(std::min(light.innerConeAngle, light.outerConeAngle)));
+        h.coneVersine = static_cast<float>(outer);
+        h.coneScale = static_cast<float>(1.0 / std::max(outer - inner, kLeastEdge * outer));
     }
     return h;
 }

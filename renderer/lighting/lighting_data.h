@@ -10,12 +10,16 @@ using namespace gnomon::gpu;
 
 // By the index of the light in the scene (GpuLight::hostIndex).
 struct HostLight {
-    vec3 intensity;      // candela (directional: lux) per colour channel
-    float coneScale;     // spot: smooth edge = saturate(cos * scale + offset)^2, as KHR_lights_punctual recommends
-    float coneOffset;    // else scale 0, offset 1
+    vec3 intensity;  // candela (directional: lux) per colour channel
+    // Spot: smooth edge = saturate((coneVersine - versine) * coneScale)^2, versine = 1 - cos of the angle to the axis.
+    // It is KHR_lights_punctual's edge, by what stays exact in a narrow cone.
+    float coneVersine;
+    float coneScale;
+    // The light fades by 1 - (d * d * windowPerSquareMetre)^2 towards its range, as KHR_lights_punctual has it. 0: it
+    // is the inverse square alone, and its range only culls.
+    float windowPerSquareMetre;
     float reserved0;
     float reserved1;
-    float reserved2;
 };
 
 struct SceneConstants {

@@ -61,10 +61,14 @@ vec3 shadeLight(Surface s, GpuLight light, vec3 positionWs, vec3 toLight) {
     if (lightType(light) != kLightDirectional) {
         vec3 d = light.positionWs - positionWs;
         float squared = dot(d, d);
-        float ratio = squared / (light.rangeMetres * light.rangeMetres);
+        float ratio = squared * host.windowPerSquareMetre;
         float window = clamp(1.0 - ratio * ratio, 0.0, 1.0);
-        float cone = clamp(dot(-toLight, light.directionWs) * host.coneScale + host.coneOffset, 0.0, 1.0);
-        irradiance *= window * cone * cone / max(squared, 1e-4);
+        irradiance *= window / max(squared, 1e-12);  // right at a lamp there is no answer
+        if (lightType(light) == kLightSpot) {
+            vec3 chord = toLight + light.directionWs;
+            float cone = clamp((host.coneVersine - 0.5 * dot(chord, chord)) * host.coneScale, 0.0, 1.0);
+            irradiance *= cone * cone;
+        }
     }
     return irradiance * reflected(s, toLight);
 }

@@ -6,6 +6,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <queue>
 
+#include "gpu_interface/numbers.h"
 #include "renderer/shadow_atlas/pack.h"
 
 namespace gnomon::renderer {
@@ -46,19 +47,26 @@ ShadowLight shadowLightOf(const SceneLight& light) {
 }
 
 float shadowNearMetres(float rangeMetres) {
-    return std::min(std::clamp(rangeMetres * 1e-3f, 0.01f, 0.05f), 0.1f * rangeMetres);
+    return 1e-8f * rangeMetres;
+}
+
+std::uint32_t shadowFaces(const ShadowLight& light) {
+    if (light.kind == LightKind::Point) return gpu::kPointLightFaces;
+    // One view of half-width tan(angle) has the texels of six faces, each of half-width 1, where tan^2 is 6.
+    constexpr float kLargestTangent = 2.44948974f;
+    return light.outerConeAngle > std::atan(kLargestTangent) ? gpu::kPointLightFaces : 1;
 }
 
 ShadowView makeShadowView(const ShadowLight& light, std::uint32_t face, std::uint32_t sizePx, std::uint32_t guardTexels,
                           const glm::dvec3& origin) {
     static constexpr glm::vec3 kForward[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-    const bool point = light.kind == LightKind::Point;
-    const glm::vec3 forward = point ? kForward[face] : light.direction;
+    const bool faces = shadowFaces(light) > 1;
+    const glm::vec3 forward = faces ? kForward[face] : light.direction;
     const glm::vec3 helper = std::abs(forward.y) > 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
     const glm::vec3 right = glm::normalize(glm::cross(forward, helper));
     const glm::vec3 up = glm::cross(right, forward);
     const float guarded = static_cast<float>(sizePx) / static_cast<float>(sizePx - 2 * guardTexels);
-    const float scale = 1.0f / ((point ? 1.0f : std::tan(std::min(light.outerConeAngle, 1.55f))) * guarded);
+    const float scale = 1.0f / ((faces ? 1.0f : std::tan(light.outerConeAngle)) * guarded);
     const float nearZ = shadowNearMetres(light.rangeMetres), farZ = light.rangeMetres;
     // Reversed Z: 1 at near, 0 at far, device depth = a + b / linear depth.
     const float a = -nearZ / (farZ - nearZ), b = nearZ * farZ / (farZ - nearZ);
@@ -90,9 +98,9 @@ ShadowPlanner::Wish ShadowPlanner::wishOfLocal(std::uint32_t index, const Shadow
         // Inside the sphere it fills the view; the nearest point of interest is taken no nearer than half a radius.
         diameterPx = 2.0f * reach.radius * camera.pixelsPerRadian / std::max(distance, 0.5f * reach.radius);
     }
-    const bool point = light.kind == LightKind::Point;
-    const std::uint32_t low = point ? settings_.minFacePx : settings_.minSpotPx;
-    const std::uint32_t high = std::min(point ? settings_.maxFacePx : settings_.maxSpotPx, settings_.atlasSizePx);
+    const std::uint32_t faces = shadowFaces(light);
+    const std::uint32_t low = faces > 1 ? settings_.minFacePx : settings_.minSpotPx;
+    const std::uint32_t high = std::min(faces > 1 ? settings_.maxFacePx : settings_.maxSpotPx, settings_.atlasSizePx);
     const float wishLog2 =
         std::log2(std::clamp(diameterPx * settings_.texelsPerPixel, static_cast<float>(low), static_cast<float>(high)));
     auto [known, isNew] = wishedLog2_.try_emplace(index, static_cast<std::uint32_t>(std::lround(wishLog2)));
@@ -101,7 +109,7 @@ ShadowPlanner::Wish ShadowPlanner::wishOfLocal(std::uint32_t index, const Shadow
     }
     const std::uint32_t size = std::clamp(1u << known->second, low, high);
     const bool seen = camera.frustum.planeCount == 0 || camera.frustum.mayHold(reach.centre, reach.radius);
-    return {index, point ? 6u : 1u, size, size, low, diameterPx * (seen ? 1.0f : kUnseenImportance)};
+    return {index, faces, size, size, low, diameterPx * (seen ? 1.0f : kUnseenImportance)};
 }
 
 ShadowPlanner::Wish ShadowPlanner::wishOfDirectional(std::uint32_t index) const {
@@ -110,13 +118,13 @@ ShadowPlanner::Wish ShadowPlanner::wishOfDirectional(std::uint32_t index) const 
 }
 
 std::vector<ShadowPlanner::Wish> ShadowPlanner::wishes(std::span<const ShadowLight> lights,
-                                                       const ShadowPlanCamera& camera) {
+                                                       const ShadowPlanCamera& camera, bool anything) {
     std::vector<Wish> out;
     for (std::uint32_t l = 0; l < lights.size(); ++l) {
         const ShadowLight& light = lights[l];
         if (!light.casts) continue;
         if (light.kind == LightKind::Directional) {
-            if (settings_.casters.radius > 0.0) out.push_back(wishOfDirectional(l));
+            if (anything) out.push_back(wishOfDirectional(l));
             continue;
         }
         const bool usable = light.rangeMetres > 0.0f && std::isfinite(light.rangeMetres) && light.outerConeAngle > 0.0f;
@@ -205,14 +213,15 @@ void ShadowPlanner::place(ShadowPlan& plan) {
 }
 
 PlannedView ShadowPlanner::planView(const Wish& wish, std::uint32_t face, const ShadowLight& light,
-                                    const ShadowPlanCamera& camera, const glm::dvec3& origin) const {
+                                    const ShadowPlanCamera& camera, const SeenRange& seen,
+                                    std::span<const ScenePart> parts, const glm::dvec3& origin) const {
     PlannedView planned;
     planned.light = wish.light;
     planned.face = face;
     planned.size = wish.size;
     if (light.kind == LightKind::Directional) {
         planned.cascade =
-            cascadeAround(settings_.cascades, camera.cascades, settings_.casters, light.direction, face, wish.size);
+            cascadeAround(settings_.cascades, camera.cascades, seen, parts, light.direction, face, wish.size);
         planned.view = cascadeView(planned.cascade, light.direction, wish.size, origin);
     } else {
         planned.view = makeShadowView(light, face, wish.size, settings_.guardTexels, origin);
@@ -221,17 +230,25 @@ PlannedView ShadowPlanner::planView(const Wish& wish, std::uint32_t face, const 
 }
 
 ShadowPlan ShadowPlanner::plan(std::span<const ShadowLight> lights, const ShadowPlanCamera& camera,
-                               const glm::dvec3& origin) {
+                               std::span<const ScenePart> parts, const glm::dvec3& origin, bool history) {
+    if (!history) {
+        wishedLog2_.clear();
+        places_.clear();
+    }
     ShadowPlan plan;
     plan.atlasTexels = std::uint64_t{settings_.atlasSizePx} * settings_.atlasSizePx * settings_.layers;
-    std::vector<Wish> granted = wishes(lights, camera);
+    std::vector<Wish> granted = wishes(lights, camera, !parts.empty());
     shrinkToFit(granted, plan);
     plan.firstView.assign(lights.size(), kNoShadowViews);
     plan.cascadeCount = settings_.cascades.count;
     for (const Wish& wish : granted) {
+        const ShadowLight& light = lights[wish.light];
+        SeenRange seen;
+        if (light.kind == LightKind::Directional)
+            seen = seenRangeOf(camera.cascades, camera.frustum, parts, light.direction);
         plan.firstView[wish.light] = static_cast<std::uint32_t>(plan.views.size());
         for (std::uint32_t f = 0; f < wish.faces; ++f)
-            plan.views.push_back(planView(wish, f, lights[wish.light], camera, origin));
+            plan.views.push_back(planView(wish, f, light, camera, seen, parts, origin));
     }
     place(plan);
     for (PlannedView& v : plan.views) {

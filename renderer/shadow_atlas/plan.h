@@ -39,7 +39,6 @@ struct ShadowPlanSettings {
     std::uint32_t minSpotPx = 64, maxSpotPx = 2048;
     std::uint32_t minCascadePx = 256, maxCascadePx = 2048;  ///< a quarter of the atlas' side at most
     CascadeSettings cascades;
-    CasterBounds casters;         ///< directional lights get views only where there is something to cast
     float texelsPerPixel = 1.0f;  ///< of the screen, where the light's range ends
 };
 
@@ -52,7 +51,7 @@ struct ShadowPlanCamera {
     CascadeCamera cascades;
 };
 
-/// A square of one light; six for a point light, one per cascade for a directional light.
+/// A square of one light; six for a point light or a wide spot, one per cascade for a directional light.
 struct PlannedView {
     std::uint32_t light = 0, face = 0;
     std::uint32_t x = 0, y = 0, layer = 0, size = 0;
@@ -71,29 +70,37 @@ struct ShadowPlan {
     std::uint64_t wantedTexels = 0, usedTexels = 0, atlasTexels = 0;
 };
 
-/// Metres: 1 cm for small lights (a lantern's cage stands a few centimetres from its flame), up to 5 cm. Reversed-Z
-/// floats make so near a plane harmless.
+/// A hundred-millionth of the range: a housing that a light has room in is never cut, at any range. Depths are then
+/// range times as small, and with reversed-Z floats they lose nothing by that: a float's step is a share of its value.
 float shadowNearMetres(float rangeMetres);
 
-/// The view of one square: face 0..5 (+X -X +Y -Y +Z -Z) of a point light, or a spot's only view.
+/// Local lights: 6 views along the axes of world space for point lights and wide spots, else 1. A spot is wide where six
+/// faces need fewer texels than one view, for the same sharpness along its axis: beyond 68 degrees.
+std::uint32_t shadowFaces(const ShadowLight& light);
+
+/// The view of one square: one of shadowFaces(), of six in the order +X -X +Y -Y +Z -Z.
 ShadowView makeShadowView(const ShadowLight& light, std::uint32_t face, std::uint32_t sizePx, std::uint32_t guardTexels,
                           const glm::dvec3& origin);
 
-/// Keeps sizes and places from frame to frame. Not thread safe.
+/// Keeps sizes and places from frame to frame, if it is let. Not thread safe.
 class ShadowPlanner {
 public:
     explicit ShadowPlanner(const ShadowPlanSettings& settings) : settings_(settings) {}
-    ShadowPlan plan(std::span<const ShadowLight> lights, const ShadowPlanCamera& camera, const glm::dvec3& origin);
+    /// `history`: a light keeps its resolution while that is little too fine or too coarse, and squares keep their
+    /// places. Without it the plan follows from its arguments alone, and what was kept before is forgotten.
+    /// `parts`: of the scene; without any, directional lights get no views.
+    ShadowPlan plan(std::span<const ShadowLight> lights, const ShadowPlanCamera& camera,
+                    std::span<const ScenePart> parts, const glm::dvec3& origin, bool history = true);
     [[nodiscard]] const ShadowPlanSettings& settings() const { return settings_; }
-    void setCasters(const CasterBounds& casters) { settings_.casters = casters; }
 
 private:
     struct Wish;
-    std::vector<Wish> wishes(std::span<const ShadowLight> lights, const ShadowPlanCamera& camera);
+    std::vector<Wish> wishes(std::span<const ShadowLight> lights, const ShadowPlanCamera& camera, bool anything);
     Wish wishOfLocal(std::uint32_t index, const ShadowLight& light, const ShadowPlanCamera& camera);
     [[nodiscard]] Wish wishOfDirectional(std::uint32_t index) const;
     [[nodiscard]] PlannedView planView(const Wish& wish, std::uint32_t face, const ShadowLight& light,
-                                       const ShadowPlanCamera& camera, const glm::dvec3& origin) const;
+                                       const ShadowPlanCamera& camera, const SeenRange& seen,
+                                       std::span<const ScenePart> parts, const glm::dvec3& origin) const;
     void shrinkToFit(std::vector<Wish>& wishes, ShadowPlan& plan) const;
     void place(ShadowPlan& plan);
 

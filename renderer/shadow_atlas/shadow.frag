@@ -8,5 +8,5 @@ layout(location = 1) in float alpha;
 
 void main() {
     const vec2 uv = textureUv(material.baseColourUse, texcoords.xy, texcoords.zw);
-    if (material.baseColour.a * alpha * texture(baseColourTexture, uv).a < material.emissiveAlphaCutoff.w) discard;
+    if (isCutOut(material.baseColour.a * alpha * texture(baseColourTexture, uv).a)) discard;
 }

@@ -96,6 +96,7 @@ ShadowAtlasImage::Key ShadowAtlasImage::keyOf(const ShadowLight& light, const Pl
             light.kind,
             view.cascade.centre,
             view.cascade.halfExtent,
+            view.cascade.depth,
             view.face,
             view.x,
             view.y,

@@ -61,7 +61,7 @@ private:
         float range, angle;
         LightKind kind;
         glm::dvec3 cascadeCentre;
-        double cascadeExtent;
+        double cascadeExtent, cascadeDepth;
         std::uint32_t face, x, y, layer, size;
         bool operator==(const Key&) const = default;
     };

@@ -19,7 +19,7 @@ struct Ray {
 Ray rayThrough(const TileDensity& view, float xPx, float yPx) {
     const float width = static_cast<float>(view.widthPx), height = static_cast<float>(view.heightPx);
     const glm::vec2 ndc(2.0f * xPx / width - 1.0f, 1.0f - 2.0f * yPx / height);
-    const SceneCamera& camera = view.camera;
+    const SceneCamera camera = fittedCamera(view.camera, view.widthPx, view.heightPx);
     const glm::mat3 axes(camera.worldFromCamera);
     const glm::vec3 eye(camera.worldFromCamera[3]);
     if (camera.orthographic) {

@@ -28,7 +28,7 @@ float squaredDistance(const glm::vec3& p, const TriangleGrid::Triangle& t) {
 
 void addTriangles(const Scene& scene, const glm::mat4& worldFromObject, const Primitive& primitive,
                   const std::vector<glm::vec3>& positions, std::vector<TriangleGrid::Triangle>& triangles) {
-    const bool mirrored = glm::determinant(glm::mat3(worldFromObject)) < 0.0f;
+    const bool mirrored = turnsWinding(glm::dmat3(glm::mat3(worldFromObject)));
     const auto world = [&](std::uint32_t i) { return glm::vec3(worldFromObject * glm::vec4(positions[i], 1.0f)); };
     const Material& material = scene.materials[primitive.material];
     for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {

@@ -69,6 +69,8 @@ GNOMON_CONSTANT GNOMON_UINT kLightShadowFadesBit = 8u;
 // Bits 4 to 7: filter and PCSS preset, see below. Directional lights: number of cascades.
 GNOMON_CONSTANT GNOMON_UINT kLightCascadesShift = 8u;
 GNOMON_CONSTANT GNOMON_UINT kLightCascadesMask = 0xFu;
+// Its six shadow views look along the axes of world space: point lights, and spots that have six.
+GNOMON_CONSTANT GNOMON_UINT kLightSixFacesBit = 0x1000u;
 // shadowView of a light that casts no shadow.
 GNOMON_CONSTANT GNOMON_UINT kNoShadowView = 0xFFFFFFFFu;
 GNOMON_CONSTANT GNOMON_UINT kPointLightFaces = 6u;
@@ -83,6 +85,8 @@ GNOMON_CONSTANT GNOMON_UINT kMaxPcfRadius = 3u;
 GNOMON_CONSTANT GNOMON_UINT kMinShadowViewSizePx = 2u * kMaxPcfRadius + 2u;
 // Texels of a cascade's border that no receiver uses: what a bilinear tap and the snapping to texels may need.
 GNOMON_CONSTANT GNOMON_UINT kCascadeMarginPx = 4u;
+// One part in so many of a cascade's extent, at its border, is blended into the next one. Of the last, into light.
+GNOMON_CONSTANT GNOMON_UINT kCascadeBlendedPart = 10u;
 // Shadow bounds: blocks of the finest level; levels, each twice as wide; a cell is one block of the coarsest.
 GNOMON_CONSTANT GNOMON_UINT kShadowBoundsBlockPx = 16u;
 GNOMON_CONSTANT GNOMON_UINT kShadowBoundsLevels = 5u;

@@ -41,7 +41,7 @@ struct GpuLight {
     float sinOuter;      // spot: sine of the half-angle; else 0
     vec3 directionVs;    // unit
     float sourceRadius;  // metres; directional: tangent of the angular radius
-    uint typeAndFlags;   // kLightPoint ..., kLightCastsBit, kLightShadowFadesBit, filter, PCSS preset, cascades
+    uint typeAndFlags;   // kLightPoint ..., kLightCastsBit, kLightShadowFadesBit, filter, PCSS preset, cascades, faces
     uint lightMask;      // low 8 bits; the light reaches a receiver iff (lightMask & receiverMask) != 0
     uint shadowView;     // first shadow view (points: of six, +X -X +Y -Y +Z -Z; cascades: nearest), or kNoShadowView
     uint hostIndex;      // index into the light array that the host gave
@@ -84,7 +84,8 @@ struct GpuShadowView {
     vec3 planeZ;
     float depthStep;     // of the atlas, beyond that of floats
     vec2 tangentPerNdc;  // lateral over linear depth; orthographic: 0
-    vec2 reserved1;
+    float mostBias;      // of GpuLight::biasMetres: perspective: a share of linear depth; orthographic: metres
+    float reserved1;
 };
 
 // A cell of the shadow bounds to be made this frame.

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 #include "gpu_interface/numbers.h"
 
@@ -26,7 +27,7 @@ namespace {
 
 constexpr double kDirectionalRange = 3.0e38;   // metres; what structs.h states
 constexpr float kLargestCoordinate = 1e9f;     // metres; squares of it are far from a float's end
-constexpr float kLargestConeAngle = 1.55f;     // radians; what scene.h states
+constexpr float kLargestConeAngle = 0.5f * std::numbers::pi_v<float>;  // what scene.h states
 constexpr float kLargestAngularRadius = 0.5f;  // radians; what scene.h states
 
 Vec3 toVec3(const float* f) {
@@ -66,7 +67,7 @@ const char* whatIsWrong(const Light& light) {
     if (local && !notNegative(light.rangeMetres)) return "its rangeMetres must be finite and at least 0";
     if (!notNegative(light.intensity)) return "its intensity must be finite and at least 0";
     if (light.type == LightType::Spot && !(light.outerConeAngle > 0.0f && light.outerConeAngle <= kLargestConeAngle)) {
-        return "its outerConeAngle must be above 0 and at most 1.55 radians";
+        return "its outerConeAngle must be above 0 and at most pi/2";
     }
     if (!notNegative(light.sourceRadius)) return "its sourceRadius must be finite and at least 0";
     if (!notNegative(light.biasMetres)) return "its biasMetres must be finite and at least 0";
@@ -192,7 +193,9 @@ const char* whatIsWrong(const VisibleLight& light, const LightShadowViews& views
                         std::uint32_t shadowViewCount) noexcept {
     const std::uint32_t type = light.gpu.typeAndFlags & gpu::kLightTypeMask;
     if (type == gpu::kLightPoint && views.count != gpu::kPointLightFaces) return "a point light has six shadow views";
-    if (type == gpu::kLightSpot && views.count != 1) return "a spot has one shadow view";
+    if (type == gpu::kLightSpot && views.count != 1 && views.count != gpu::kPointLightFaces) {
+        return "a spot has one shadow view, or six like a point light";
+    }
     if (type == gpu::kLightDirectional && (views.count < 1 || views.count > gpu::kMaxCascades)) {
         return "a directional light has 1 to 8 shadow views, one per cascade";
     }
@@ -206,7 +209,10 @@ void giveShadow(const VisibleLight& light, const LightShadowViews& views, gpu::G
     out.typeAndFlags |= gpu::kLightCastsBit | light.shadowFlags |
                         static_cast<std::uint32_t>(light.filter) << gpu::kLightFilterShift |
                         std::uint32_t{light.pcssPreset} << gpu::kLightPcssPresetShift;
-    if (light.directional) out.typeAndFlags |= views.count << gpu::kLightCascadesShift;
+    if (light.directional)
+        out.typeAndFlags |= views.count << gpu::kLightCascadesShift;
+    else if (views.count == gpu::kPointLightFaces)
+        out.typeAndFlags |= gpu::kLightSixFacesBit;
     out.shadowView = views.first;
     out.shadowFade = light.shadowFade;
     out.shadowFadePerMetre = light.shadowFadePerMetre;

@@ -9,7 +9,7 @@
 
 #include "visibility/shadowmap.glsl"
 
-const float kBlendedShare = 0.1;
+const float kBlendedShare = 1.0 / float(kCascadeBlendedPart);
 
 // Whether a cascade holds a point; `border` is 0 where it is to be used alone and 1 at its border.
 bool cascadeHolds(uint viewIndex, vec3 positionWs, out float border) {

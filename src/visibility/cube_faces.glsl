@@ -1,4 +1,4 @@
-// Taps of a soft shadow that leave their face of a point light. Included by pcss_kernel.glsl, whose kernel it uses.
+// Taps of a soft shadow that leave their face, where a light has six. Included by pcss_kernel.glsl, whose kernel it uses.
 #ifndef GNOMON_VISIBILITY_CUBE_FACES_GLSL
 #define GNOMON_VISIBILITY_CUBE_FACES_GLSL
 
@@ -12,7 +12,7 @@ vec3 viewRow(uint view, uint row) {
                 shadowViews[view].clipFromWorld[2][row]);
 }
 
-// A tap beyond the border of a point light's face looks at the face that its direction meets. There the receiver's
+// A tap beyond the border of a face looks at the face that its direction meets. There the receiver's
 // plane is compared with what is stored; both are told as depths of the face that the tap left.
 // The two shadow views are read field by field: two whole ones at once would cost every caller nine registers
 // (docs/register-pressure.md).

@@ -3,7 +3,8 @@
 // Problem: a shadowmap holds one depth per texel, that of the texel's centre. A surface seen at a slant is above that
 // depth on one side of the texel and below it on the other. So it shadows itself.
 // Source: the paper, section 4: a constant, 2 mm by default, in *linear* depth along the light's view axis. Slopes are
-// met at each texel by the receiver's own face plane, which is ours.
+// met at each texel by the receiver's own face plane, which is ours. So is a limit to the constant that goes by what the
+// view sees (ShadowView::mostBias): in a scene of 4 mm, 2 mm would be half the scene.
 // Plain way: a hardware bias by slope, in device depth, as large as the widest kernel on the steepest face needs.
 // Here: along any plane, device depth is affine in a texel's position. That holds with perspective (A + B / z, and 1 /
 // z is affine) as without. So one depth and one slope per pixel give the plane's depth at every texel's centre. That is
@@ -46,9 +47,11 @@ vec2 planeSlope(GpuShadowView view, bool orthographic, vec3 n, vec2 ndc, float l
     return slope;
 }
 
-// How far the point moves toward the light along the light's view axis, metres.
-float linearBias(GpuLight light, Receiver receiver) {
-    return receiver.subsurface ? max(light.biasMetres, frame.subsurfaceBiasMetres) : light.biasMetres;
+// How far the point, at a linear depth, moves toward the light along the light's view axis, metres.
+float linearBias(GpuShadowView view, bool orthographic, GpuLight light, Receiver receiver, float linear) {
+    precise float most = orthographic ? view.mostBias : view.mostBias * max(linear, 0.0);
+    float bias = min(light.biasMetres, most);
+    return receiver.subsurface ? max(bias, frame.subsurfaceBiasMetres) : bias;
 }
 
 bool movesTowardLight(GpuLight light, Receiver receiver) {
@@ -67,7 +70,8 @@ float deviceDepthSlack(GpuShadowView view, float depth, vec2 slope) {
 
 float deviceDepthOf(GpuShadowView view, bool orthographic, float linear) {
     float b = view.depthFromLinearB;
-    precise float depth = view.depthFromLinearA + (orthographic ? b * linear : b / max(linear, 1e-4));
+    // |B| is about the near plane's distance. Far before that plane, any depth says that nothing is nearer to the light.
+    precise float depth = view.depthFromLinearA + (orthographic ? b * linear : b / max(linear, 1e-3 * abs(b)));
     return depth;
 }
 
@@ -77,7 +81,7 @@ float biasedDepth(GpuShadowView view, bool orthographic, GpuLight light, Receive
                   vec2 tangent, out vec2 slope) {
     slope = vec2(0.0);
     if (kDepthBias == kDepthBiasUnbiased) return deviceDepthOf(view, orthographic, linear);
-    float bias = linearBias(light, receiver);
+    float bias = linearBias(view, orthographic, light, receiver, linear);
     // Away from the light, so that what looks away from it rather shadows itself.
     float sign = kFacedAwayIsDark != 0u || movesTowardLight(light, receiver) ? 1.0 : -1.0;
     if (kDepthBias == kDepthBiasOrientedConstant) {

@@ -48,14 +48,14 @@ bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, out float needed, o
         float nearest = s.sign > 0.0 ? bounds.y : -bounds.x;
         float farthest = s.sign > 0.0 ? bounds.x : -bounds.y;
         float rise = dot(abs(s.slope), extent);
-        float slack = 1e-6 + 1e-5 * rise;  // the taps' own rounding
+        float slack = 1e-6 * abs(s.depth) + 1e-5 * rise;  // the taps' own rounding
         if (nearest <= max(s.depth - rise - slack, s.least)) return true;
         visibility = 0.0;
         if (i == 0u && farthest > max(s.depth + rise + slack, s.least)) return true;
         visibility = 1.0;
         // The region of the source grows toward the light.
         float seen = fma(k.radius1, nearest, k.radius0) + kTapTexels * k.texel;
-        seen += 1e-5 * abs(seen) + 1e-6 * (abs(k.radius0) + k.radius1);
+        seen += 1e-5 * abs(seen) + 1e-6 * (abs(k.radius0) + k.radius1 * abs(nearest));
         if (!(seen < needed)) return false;
         needed = max(seen, 0.0);
     }

@@ -8,6 +8,8 @@
 namespace gnomon {
 namespace {
 
+constexpr float kNoLimit = 3.0e38f;  // 0 times it is 0, which cannot be said of infinity
+
 Result checkView(std::size_t index, const ShadowView& view, std::span<const ShadowAtlas> atlases) {
     const auto number = static_cast<unsigned>(index);
     for (float value : view.clipFromWorld) {
@@ -38,6 +40,9 @@ Result checkView(std::size_t index, const ShadowView& view, std::span<const Shad
     if (!nearOk || !farOk) {
         return Result::failure(Status::BadArgument,
                                "Shadow view %u needs 0 < near < far (and a finite far plane if orthographic).", number);
+    }
+    if (!(view.mostBias >= 0.0f)) {
+        return Result::failure(Status::BadArgument, "Shadow view %u: its mostBias must be at least 0.", number);
     }
     return {};
 }
@@ -118,6 +123,7 @@ gpu::GpuShadowView convert(const ShadowView& view, const ShadowAtlas& atlas) {
     if (!view.orthographic)
         v.tangentPerNdc = {v.pxFromNdcScale.x / v.pxPerMetre.x, v.pxFromNdcScale.y / v.pxPerMetre.y};
     if (!setPlane(view.clipFromWorld, view.orthographic, b, atlas.depthStep, v)) v.pxPerMetre = {};
+    v.mostBias = std::min(view.mostBias, kNoLimit);
     v.atlasPerTexel = {1.0f / static_cast<float>(atlas.widthPx), 1.0f / static_cast<float>(atlas.heightPx)};
     return v;
 }

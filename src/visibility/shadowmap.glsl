@@ -26,7 +26,7 @@ struct ShadowPoint {
     bool inFront;  // of the light; else nothing can occlude it
 };
 
-// Point lights: the face of the largest component, in the order +X -X +Y -Y +Z -Z.
+// Lights of six faces: that of the largest component, in the order +X -X +Y -Y +Z -Z.
 uint cubeFace(vec3 fromLight) {
     vec3 a = abs(fromLight);
     if (a.x >= a.y && a.x >= a.z) return fromLight.x >= 0.0 ? 0u : 1u;

@@ -69,7 +69,7 @@ float providerVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
     if (hasFilter(light, kFilterHost)) return hostVisibility(light, receiver, toLight);
 #endif
     if (lightType(light) == kLightDirectional) return cascadedVisibility(light, receiver);
-    uint face = lightType(light) == kLightPoint ? cubeFace(receiver.positionWs - light.positionWs) : 0u;
+    uint face = lightHasSixFaces(light) ? cubeFace(receiver.positionWs - light.positionWs) : 0u;
     return viewVisibility(light.shadowView + face, light, receiver);
 }
 

@@ -7,22 +7,12 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "gpu/renderer/device_test.h"
+#include "gpu/renderer/drawing.h"
 #include "renderer/gbuffer/gbuffer.h"
 #include "renderer/shadow_atlas/shadow_atlas.h"
 
 namespace gnomon::renderer {
 namespace {
-
-constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-
-// A square of 2x2 m in the plane z = 0 of object space, facing +z, as two triangles.
-Mesh squareMesh() {
-    Primitive square;
-    square.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-    square.indices = {0, 1, 2, 0, 2, 3};
-    for (const glm::vec3& p : square.positions) square.bounds.add(p);
-    return {"square", {square}};
-}
 
 // A 20 m floor at y = 0, a mirrored square 1 m above it, and far away one more that nothing sees.
 Scene testScene(const glm::vec3& place) {
@@ -41,53 +31,6 @@ Scene testScene(const glm::vec3& place) {
          at * glm::translate(glm::mat4(1.0f), {0, 1, 0}) * faceUp * glm::scale(glm::mat4(1.0f), {-0.5f, 0.5f, 1})});
     scene.instances.push_back({"unseen", 1, at * glm::translate(glm::mat4(1.0f), {500, 0, 0}) * faceUp});
     return scene;
-}
-
-glm::vec3 decodeOctahedral(std::uint32_t word) {
-    const glm::vec2 e = glm::vec2(word & 0xFFFFu, word >> 16) / 65535.0f * 2.0f - 1.0f;
-    glm::vec3 n(e, 1.0f - std::abs(e.x) - std::abs(e.y));
-    const float fold = std::max(-n.z, 0.0f);
-    n.x += n.x >= 0.0f ? -fold : fold;
-    n.y += n.y >= 0.0f ? -fold : fold;
-    return glm::normalize(n);
-}
-
-template <typename T>
-std::vector<T> readAs(const Device& device, const GpuImage& image, std::uint32_t layer = 0) {
-    const std::vector<std::uint8_t> bytes = readImage(device, image, kRead, layer);
-    std::vector<T> values(bytes.size() / sizeof(T));
-    std::memcpy(values.data(), bytes.data(), bytes.size());
-    return values;
-}
-
-struct TestCamera {
-    Camera camera;
-    bool orthographic = false;
-};
-
-// Looks straight down from 4 m above the floor.
-TestCamera cameraAbove(const glm::vec3& eye, bool orthographic, DeviceDepth depth) {
-    TestCamera out;
-    out.orthographic = orthographic;
-    const glm::mat4 view = glm::lookAt(eye, eye - glm::vec3(0, 1, 0), glm::vec3(0, 0, -1));
-    glm::mat4 clip(0.0f);
-    const float n = 0.1f, f = 100.0f;
-    const bool reversed = depth == DeviceDepth::ReversedZ;
-    clip[0][0] = orthographic ? 0.25f : 1.0f;
-    clip[1][1] = -clip[0][0];
-    if (orthographic) {
-        clip[2][2] = (reversed ? 1.0f : -1.0f) / (f - n);
-        clip[3][2] = reversed ? f / (f - n) : -n / (f - n);
-        clip[3][3] = 1.0f;
-    } else {
-        clip[2][3] = -1.0f;
-        clip[2][2] = reversed ? 0.0f : -1.0f;
-        clip[3][2] = reversed ? n : -n;  // infinite far
-    }
-    std::memcpy(out.camera.viewFromWorld, glm::value_ptr(view), 64);
-    std::memcpy(out.camera.clipFromView, glm::value_ptr(clip), 64);
-    out.camera.deviceDepth = depth;
-    return out;
 }
 
 double viewDepthOf(const TestCamera& c, double device) {
@@ -223,14 +166,14 @@ TEST_F(DrawTest, ShadowAtlasHoldsLinearDepthAndCaches) {
         lights[1].rangeMetres = 8.0f;
         ShadowPlanCamera camera;
         camera.position = {0.0, 4.0, 0.0};
-        ShadowPlan plan = planner.plan(lights, camera, {});
+        ShadowPlan plan = planner.plan(lights, camera, {}, {});
         ASSERT_EQ(plan.views.size(), 7u);
         auto draw = [&] {
             ShadowAtlasStatistics statistics;
             device.submitAndWait([&](VkCommandBuffer commands) {
                 gpuScene.recordTransforms(commands, {});
                 atlas.prepare(gpuScene, lights, plan);
-            statistics = atlas.record(commands, gpuScene);
+                statistics = atlas.record(commands, gpuScene);
             });
             return statistics;
         };

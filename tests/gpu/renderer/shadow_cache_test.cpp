@@ -90,7 +90,7 @@ struct Rig {
         for (const SceneLight& light : s.lights) lights.push_back(shadowLightOf(light));
         ShadowPlanCamera camera;
         camera.position = {0, 4, 0};
-        plan = ShadowPlanner(settings).plan(lights, camera, {});
+        plan = ShadowPlanner(settings).plan(lights, camera, {}, {});
     }
     Views draw() {
         ShadowAtlasStatistics statistics;
@@ -186,6 +186,43 @@ TEST_F(ShadowCacheTest, WhatDeformsCountsAsMoving) {
         pose.worldFromObject[3] = whole;
         rig.gpuScene.setPose(pose);
         EXPECT_EQ(rig.draw(), (Views{{kPoint, 3}}));
+    }
+    expectNoMessages();
+}
+
+// Depths along a sun's way depend on all that is seen. Where they change alone, what was kept says something else.
+TEST_F(ShadowCacheTest, OtherDepthsOfACascadeAreDrawnAgain) {
+    for (const DeviceInfo& info : suitable()) {
+        SCOPED_TRACE(info.name);
+        const Device device(instance(), info);
+        Scene scene = makeScene();
+        scene.lights = {{"sun", LightKind::Directional}};
+        scene.lights[0].direction = {0, -1, 0};
+        Rig rig(device, scene);
+        ShadowPlanSettings settings;
+        settings.atlasSizePx = Rig::kAtlasPx;
+        settings.cascades.count = 1;
+        ShadowPlanCamera camera;
+        camera.cascades.position = camera.position = {0, 4, 40};
+        const auto cube = [](double y, double half, bool seen) {
+            return ScenePart{{0.0, y, 0.0}, 2.0 * half, seen, glm::dmat3(half)};
+        };
+        std::vector<ScenePart> parts = {cube(0.0, 30.0, true), cube(-45.0, 1.0, false)};
+        const auto planned = [&] { return ShadowPlanner(settings).plan(rig.lights, camera, parts, {}); };
+        const ShadowPlan first = rig.plan = planned();
+        EXPECT_EQ(rig.draw().size(), 1u);
+        EXPECT_EQ(rig.draw(), Views());
+        parts[1].seen = true;  // below all else
+        rig.plan = planned();
+        const Cascade &before = first.views.at(0).cascade, &after = rig.plan.views.at(0).cascade;
+        ASSERT_EQ(after.centre, before.centre);
+        ASSERT_EQ(after.halfExtent, before.halfExtent);
+        ASSERT_GT(after.depth, before.depth);
+        EXPECT_EQ(rig.draw().size(), 1u);
+        Rig fresh(device, scene);
+        fresh.plan = rig.plan;
+        fresh.draw();
+        EXPECT_EQ(rig.texels(), fresh.texels());
     }
     expectNoMessages();
 }

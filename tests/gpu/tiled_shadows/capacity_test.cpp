@@ -153,7 +153,7 @@ TEST_P(CapacityTest, AwkwardPlaces) {
         reference::Random random(14);
         for (const double ahead : {-3.0, -0.2, 0.0, 0.2, 0.4, 0.6, 2.0}) {
             for (const double range : {0.05, 0.3, 1.0, 5.0, 500.0}) {
-                for (const float angle : {0.0f, 0.002f, 0.05f, 0.8f, 1.4f, 1.55f}) {  // 0: a point light
+                for (const float angle : {0.0f, 0.002f, 0.05f, 0.8f, 1.4f, 1.57079637f}) {  // 0: a point light
                     Light light;
                     const reference::Vec3 at = eye + forward * ahead;
                     const reference::Vec3 way = random.chance(0.6) ? forward : random.unitVector();

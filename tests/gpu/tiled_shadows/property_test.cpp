@@ -45,7 +45,8 @@ FrameInput randomFrame(std::uint64_t seed) {
     input.lights = reference::makeLights(random, setup.camera, lights);
     for (Light& light : input.lights) {
         if (light.type == LightType::Spot && random.chance(0.5))
-            light.outerConeAngle = static_cast<float>(std::exp(random.uniform(std::log(5e-4), std::log(1.55))));
+            light.outerConeAngle = static_cast<float>(std::exp(random.uniform(std::log(5e-4), std::log(1.5707963))));
+        if (light.type == LightType::Spot && random.chance(0.1)) light.outerConeAngle = 1.57079637f;
         if (random.chance(0.1)) light.rangeMetres = static_cast<float>(std::exp(random.uniform(-3, 8)));
         move(light.position, offset);
     }

@@ -152,6 +152,30 @@ TEST_P(ShadowsTest, CoarseDepthImages) {
     EXPECT_LT(d16, coarse);
 }
 
+// Near planes that cut no housing of a lamp: depths are a millionth of what they were, and as fine.
+TEST_P(ShadowsTest, TinyNearPlanes) {
+    RoomSetup setup{.seed = 18, .widthPx = 56, .heightPx = 40};
+    setup.lights.castingShare = 1.0;
+    setup.lights.maxSourceRadius = 0.3;
+    setup.shadows.nearMetres = 1e-7;
+    setup.shadows.mixDepthKinds = false;  // with standard Z nothing is left of such depths
+    for (const bool infinite : {true, false}) {
+        setup.shadows.infiniteFar = infinite;
+        FrameInput input = makeRoomFrame(setup);
+        for (const Filter filter : {Filter::Hard, Filter::Pcss}) {
+            SCOPED_TRACE(int(filter));
+            useFilter(input, filter);
+            input.settings.shadowBounds = filter == Filter::Pcss;
+            Rig rig(device(), {}, viewDescFor(input));
+            ASSERT_TRUE(rig.ok());
+            const Checked checked = checkFrame(input, rig.run(input));
+            EXPECT_LT(checked.shadows.ambiguousShare(), 0.02);
+            EXPECT_GT(checked.shadows.slots, 10u);
+            EXPECT_GT(checked.shadows.allLit, 10u);
+        }
+    }
+}
+
 // Shadowmaps of 16 bits: without their step in the bias, faces shadow themselves.
 TEST_P(ShadowsTest, CoarseShadowAtlases) {
     RoomSetup setup{.seed = 17, .widthPx = 48, .heightPx = 40};

@@ -3,6 +3,7 @@
 #include <bit>
 #include <fstream>
 
+#include "picture/picture.h"
 #include "unit/app/program.h"
 
 namespace gnomon::app {
@@ -36,7 +37,8 @@ std::string slidingTriangle(float reach) {
 
 TEST_F(Rendering, TimePasses) {
     std::ofstream(folder_ / "slide.gltf") << slidingTriangle(3.0f);
-    const std::string render = "render slide.gltf --size 64x36 --exposure 0 ";
+    // The default camera has all of the animation in view, or the triangle at rest where none plays.
+    const std::string render = "render slide.gltf --size 64x36 --exposure 0 --camera 1,1,6:1,0.5,0 ";
     expectGood(render + "-o start.png");
     expectGood(render + "--time 0.5 -o middle.png");
     expectGood(render + "--time 2 -o looped.png");
@@ -53,7 +55,7 @@ TEST_F(Rendering, TimePasses) {
     EXPECT_FALSE(fs::exists(folder_ / "film_0003.png"));
     expectGood("bench slide.gltf --size 64x36 --warmup 0 --frames 2 --fps 30 --time 0.1");
     std::ofstream(folder_ / "thrown.gltf") << slidingTriangle(9.0e14f);
-    expectGood("render thrown.gltf --size 64x36 --time 0.9");
+    expectGood("render thrown.gltf --size 64x36 --time 0.9");  // its default camera looks at where it starts
     std::ofstream(folder_ / "slide.gltf") << slidingTriangle(2.0e15f);
     expectRefused("render slide.gltf --size 64x36 --time 0.9 --quiet", 2);  // a value beyond 1e15
 }
@@ -70,6 +72,29 @@ TEST_F(Rendering, SoftShadowsHaveTheirOptions) {
     expectGood(render + "--visibility-bits 4 -o four.png");
     expectGood("compare soft.png four.png --tolerance 15");
     EXPECT_EQ(run("compare soft.png four.png --tolerance 1").exitCode, 1);
+}
+
+// Light is a sum: each lamp alone and the ambient light alone make up the picture of all.
+TEST_F(Rendering, LightsOneByOne) {
+    const std::string render = "render boxes --size 64x36 --filter hard --exposure -2 ";
+    expectGood(render + "--light 0 --ambient off -o first.png --stats first.json");
+    expectGood(render + "--light 1 --light 2 --ambient off -o others.png");
+    expectGood(render + "--ambient off -o all.png");
+    EXPECT_EQ(readJson("first.json")["lights"]["given"], 3) << "numbers name the same lights";
+    const auto brightness = [this](const char* name) {
+        double sum = 0.0;
+        for (const std::uint8_t value : renderer::readPng(folder_ / name).rgb) sum += value;
+        return sum;
+    };
+    EXPECT_GT(brightness("first.png"), 0.0);
+    EXPECT_GT(brightness("others.png"), 0.0);
+    EXPECT_GT(brightness("all.png"), brightness("first.png"));
+    EXPECT_GT(brightness("all.png"), brightness("others.png"));
+    std::ofstream(folder_ / "slide.gltf") << slidingTriangle(3.0f);
+    const Outcome unlit = run("render slide.gltf --size 64x36 --ambient off -o sun.png");
+    EXPECT_EQ(unlit.exitCode, 0) << unlit.err;
+    EXPECT_NE(unlit.err.find("a sun was added"), std::string::npos) << unlit.err;
+    EXPECT_GT(brightness("sun.png"), 0.0);
 }
 
 TEST_F(Rendering, FramesAreCleanUnderValidation) {

@@ -45,6 +45,22 @@ SceneCamera moved(SceneCamera camera, const glm::vec3& by) {
     return camera;
 }
 
+// Frames in two orders: each is what it is, whatever came before. (That history would show is seen where the plan is
+// tested, in tests/unit/renderer/shadow_plan_test.cpp.)
+TEST_P(Repeated, ThePastDoesNotShow) {
+    const View3d view = builtin("sundial", 16);
+    const SceneCamera cameras[] = {view.camera, moved(view.camera, {0.0f, 2.0f, 8.0f}),
+                                   moved(view.camera, {0.0f, 9.0f, 40.0f})};
+    RendererDesc desc = smallDesc();
+    desc.frame.history = false;
+    Renderer forth(device(), view.scene, desc, pipelinesOf(device()));
+    Renderer back(device(), view.scene, desc, pipelinesOf(device()));
+    HdrPicture first[3];
+    for (std::size_t i = 0; i < 3; ++i) first[i] = draw(forth, cameras[i], ShadowMode::Deferred).linear;
+    for (std::size_t i = 3; i-- > 0;)
+        EXPECT_TRUE(draw(back, cameras[i], ShadowMode::Deferred).linear.rgba == first[i].rgba) << "camera " << i;
+}
+
 void expectAlike(const HdrPicture& expected, const HdrPicture& actual) {
     const float exposure = automaticExposure(expected);
     const Difference apart = compare(toneMap(expected, exposure), toneMap(actual, exposure));
@@ -59,7 +75,9 @@ TEST_P(Repeated, ShadowmapsAreKept) {
         if (!thorough() && scene != std::string("columns")) continue;
         SCOPED_TRACE(scene);
         const View3d view = builtin(scene);
-        Renderer kept(device(), view.scene, smallDesc(), pipelinesOf(device()));
+        RendererDesc desc = smallDesc();
+        desc.frame.history = true;
+        Renderer kept(device(), view.scene, desc, pipelinesOf(device()));
         const Frame first = draw(kept, view.camera, ShadowMode::Deferred);
         EXPECT_GT(first.report.shadowViewsDrawn, 0u);
         const Frame still = draw(kept, view.camera, ShadowMode::Deferred);

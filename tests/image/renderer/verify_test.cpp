@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "image/renderer/harness.h"
-#include "truth/figures.h"
+#include "image/renderer/verified.h"
 
 namespace gnomon::renderer::image_test {
 namespace {
@@ -12,42 +11,6 @@ namespace {
 GNOMON_IMAGE_TEST_SUITE(Verify);
 
 constexpr double kMostAcneAndLeak = 0.001, kMostContactLeak = 0.01, kMostPenumbraError = 0.05;
-
-struct Verified {
-    Figures figures, subsurface;
-    std::vector<float> visibility;  // of the last light
-    LightTruth truth;
-    HdrPicture picture;
-};
-
-Verified verified(const Device& device, const View3d& view, const RendererDesc& desc) {
-    Renderer renderer(device, view.scene, desc, pipelinesOf(device));
-    Verified out;
-    out.picture = draw(renderer, view.camera, ShadowMode::Deferred).linear;
-    const Pose pose = poseAt(view.scene, 0.0);
-    const SceneCamera camera = posedCamera(view.scene, pose, view.camera);
-    const TracedScene traced(
-        view.scene, pose, glm::dvec3(camera.worldFromCamera[3]),
-        {desc.frame.drawing.subsurfaceFronts, static_cast<double>(desc.frame.subsurfaceBiasMetres)});
-    const TruthExtent extent = {desc.frame.widthPx, desc.frame.heightPx};
-    const std::vector<TruthReceiver> receivers =
-        receiversOf(traced, camera, extent.widthPx, extent.heightPx, renderer.readTriangleIds());
-    for (std::uint32_t i = 0; i < pose.lights.size(); ++i) {
-        LightTruthDesc light;
-        light.light = pose.lights[i];
-        light.views = renderer.shadowViews(i);
-        light.viewsOrigin = renderer.frameOrigin();
-        light.soft = desc.frame.filters.front() == Filter::Pcss;
-        light.subsetOf = 4;
-        out.visibility = renderer.readVisibility(i);
-        out.truth = traceLight(traced, receivers, extent, light);
-        completeSoftTruth(out.truth, traced, receivers, light, out.visibility);
-        const LightFigures figures = figuresOf(out.truth, out.visibility, light.soft);
-        out.figures += figures.opaque;
-        out.subsurface += figures.subsurface;
-    }
-    return out;
-}
 
 TEST_P(Verify, AcneAndLeakStayWithinTheirLimits) {
     struct {
@@ -101,6 +64,37 @@ TEST_P(Verify, FaceNormalsFromDepthOnWideFaces) {
     }
 }
 
+// Wide spots are as good as narrower ones, up to a hemisphere: neither in the light's own error nor in what is set aside
+// as an edge because of large texels.
+TEST_P(Verify, SpotsOfAnyWidth) {
+    double aside = 0.0, error = 0.0;
+    for (const float angle : {1.05f, 1.4f, 1.57079637f}) {
+        View3d view = builtin("boxes");
+        SceneLight spot;
+        spot.kind = LightKind::Spot;
+        spot.position = {0.4f, 3.0f, 0.6f};
+        spot.direction = {0.0f, -1.0f, 0.0f};
+        spot.outerConeAngle = angle;
+        spot.intensity = 100.0f;
+        spot.rangeMetres = 20.0f;
+        view.scene.lights = {spot};
+        RendererDesc desc = smallDesc(160, 90);
+        desc.frame.filters = {Filter::Hard};
+        const Figures f = verified(device(), view, desc).figures;
+        std::printf("[ figure   ] %s: spot of %.2f rad: set aside %.2f %%, acne %.4f %%, leak %.4f %%\n",
+                    device().info().name.c_str(), static_cast<double>(angle), 100.0 * f.share(f.edges),
+                    100.0 * f.share(f.acne), 100.0 * f.share(f.leak));
+        EXPECT_GT(f.dark, 100u);
+        if (aside == 0.0) {
+            aside = f.share(f.edges);
+            error = f.share(f.acne + f.leak);
+        }
+        EXPECT_LE(f.share(f.acne + f.leak), error + kMostAcneAndLeak);
+        EXPECT_LE(error, 0.003) << "large texels of a small atlas, on faces that the lamp grazes";
+        EXPECT_LE(f.share(f.edges), 1.5 * aside + 0.01);
+    }
+}
+
 // The same comparison tells a result that is wrong: every shadow lost, and every light.
 TEST_P(Verify, LostShadowsAndLightsAreTold) {
     RendererDesc desc = smallDesc(160, 90);
@@ -138,7 +132,7 @@ TEST_P(Verify, ABiasThatIsACentimetreTooLargeIsTold) {
     EXPECT_GT(good.contacts, 300u);
     EXPECT_LE(good.share(good.acne + good.leak), kMostAcneAndLeak);
     EXPECT_LE(good.share(good.contactLeak), kMostContactLeak);
-    desc.frame.biasMetres += 0.01f;
+    desc.frame.biasMetres = kBiasMetres + 0.01f;
     const Figures planted = verified(device(), view, desc).figures;
     EXPECT_GT(planted.contactLeak, good.contactLeak + 100u);
     EXPECT_GT(planted.share(planted.contactLeak), kMostContactLeak);

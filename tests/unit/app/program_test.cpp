@@ -47,6 +47,8 @@ TEST_F(Program, WrongUsageIsRefused) {
                                   "verify --unquantised",
                                   "verify boxes --light 99 --quiet --size 64x64",
                                   "verify boxes --light -1",
+                                  "render boxes --light 99 --quiet --size 64x64",
+                                  "render --ambient dim",
                                   "verify boxes --maps /dev/null",
                                   "render one two",
                                   "render --lights -1",
@@ -169,6 +171,16 @@ TEST_F(Program, MalformedFilesAreRefused) {
         expectRefused(std::string("render ") + file, 2);
 }
 
+TEST_F(Program, ExtensionsOfFilesMayBeInCapitals) {
+    const std::string lamp =
+        R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"extensions":{"KHR_lights_punctual":)"
+        R"({"light":0}}}],"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}}})";
+    for (const char* file : {"CASE.GLTF", "Mixed.Gltf", "x.GlB"}) {
+        std::ofstream(folder_ / file) << lamp;
+        expectGood(std::string("render ") + file + " --size 16x16 -o PICTURE.Png");
+    }
+}
+
 TEST_F(Program, WrongCamerasAndDevicesAreRefused) {
     for (const char* camera : {"nosuch", "'#99'", "nan,0,0:0,0,0", "0,0,0:0,0,0", "0,inf,0:0,0,0", "0,1,2:3,4",
                                "0,0,1:0,0,0:180", "0,0,1:0,0,0:nan"})
@@ -243,6 +255,33 @@ TEST_F(Program, RendersAndDescribesAFrame) {
         }
         EXPECT_FALSE(pass.contains("drawing"));
     }
+}
+
+TEST_F(Program, TellsWhatEachLightGot) {
+    expectGood("render boxes --size 16x16 --stats stated.json");
+    nlohmann::json lights = readJson("stated.json")["sceneLights"];
+    ASSERT_EQ(lights.size(), 3u);
+    EXPECT_EQ(lights[0]["rangeMetres"], 7.0);
+    EXPECT_EQ(lights[0]["rangeGuessed"], false);
+    EXPECT_EQ(lights[0]["biasMetres"], 0.002);
+    EXPECT_EQ(lights[0]["biasAtMostPerMetre"], 0.002);
+    std::ofstream(folder_ / "lamps.gltf")
+        << R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0,1]}],"nodes":[{"extensions":{"KHR_lights_punctual":)"
+        << R"({"light":0}}},{"translation":[3,0,0],"extensions":{"KHR_lights_punctual":{"light":1}}}],)"
+        << R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","extras":{"sourceRadius":0.25}},)"
+        << R"({"type":"point","range":9}]}}})";
+    expectGood("render lamps.gltf --size 16x16 --source-radius 0.125 --bias-metres 0.5 --stats guessed.json");
+    lights = readJson("guessed.json")["sceneLights"];
+    EXPECT_EQ(lights[0]["rangeGuessed"], true);
+    EXPECT_EQ(lights[0]["sourceRadiusMetres"], 0.25);
+    EXPECT_EQ(lights[1]["rangeGuessed"], false);
+    EXPECT_EQ(lights[1]["sourceRadiusMetres"], 0.125);
+    EXPECT_EQ(lights[1]["sourceRadiusGuessed"], false);
+    EXPECT_EQ(lights[1]["biasMetres"], 0.5);
+    EXPECT_EQ(lights[1]["biasStated"], true);
+    EXPECT_FALSE(lights[1].contains("biasAtMostPerMetre"));
+    for (const char* bad : {"--bias-metres -1", "--bias-metres 2mm", "--bias-metres nan", "--source-radius -1"})
+        expectRefused(std::string("render boxes ") + bad, 2);
 }
 
 TEST_F(Program, AFullDiskIsAFailure) {

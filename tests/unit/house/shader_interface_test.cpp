@@ -56,7 +56,7 @@ std::vector<MemberLayout> gpuShadowView() {
             MEMBER(GpuShadowView, planeSlopePerPxX), MEMBER(GpuShadowView, planeY),
             MEMBER(GpuShadowView, planeSlopePerPxY), MEMBER(GpuShadowView, planeZ),
             MEMBER(GpuShadowView, depthStep),        MEMBER(GpuShadowView, tangentPerNdc),
-            MEMBER(GpuShadowView, reserved1)};
+            MEMBER(GpuShadowView, mostBias),         MEMBER(GpuShadowView, reserved1)};
 }
 
 std::vector<MemberLayout> gpuShadowBoundsCell() {
@@ -139,8 +139,9 @@ std::vector<MemberLayout> gpuEvaluateHead() {
 }
 
 std::vector<MemberLayout> hostLight() {
-    return {MEMBER(HostLight, intensity), MEMBER(HostLight, coneScale), MEMBER(HostLight, coneOffset),
-            MEMBER(HostLight, reserved0), MEMBER(HostLight, reserved1), MEMBER(HostLight, reserved2)};
+    return {MEMBER(HostLight, intensity), MEMBER(HostLight, coneVersine),
+            MEMBER(HostLight, coneScale), MEMBER(HostLight, windowPerSquareMetre),
+            MEMBER(HostLight, reserved0), MEMBER(HostLight, reserved1)};
 }
 
 std::vector<MemberLayout> sceneConstants() {

@@ -62,7 +62,8 @@ TEST(Lists, OneLight) {
     EXPECT_EQ(g.sourceRadius, 0.25f);
     EXPECT_EQ(g.lightMask, 0x0Fu);
     EXPECT_EQ(g.biasMetres, 0.004f);
-    EXPECT_EQ(g.typeAndFlags, gpu::kLightPoint | gpu::kLightCastsBit | gpu::kFilterPcf << gpu::kLightFilterShift |
+    EXPECT_EQ(g.typeAndFlags, gpu::kLightPoint | gpu::kLightCastsBit | gpu::kLightSixFacesBit |
+                                  gpu::kFilterPcf << gpu::kLightFilterShift |
                                   3u << gpu::kLightPcssPresetShift);
     EXPECT_EQ(g.shadowView, 0u);
     EXPECT_EQ(g.lightFade, 1.0f);
@@ -324,7 +325,7 @@ TEST(BadLight, EachHasItsSentence) {
     expectRefused(with(point, [&](Light& l) { l.rangeMetres = kInfinity; }), "rangeMetres");
     expectRefused(with(point, [&](Light& l) { l.intensity = nan; }), "intensity");
     expectRefused(with(spot, [&](Light& l) { l.outerConeAngle = 0; }), "outerConeAngle");
-    expectRefused(with(spot, [&](Light& l) { l.outerConeAngle = 1.56f; }), "outerConeAngle");
+    expectRefused(with(spot, [&](Light& l) { l.outerConeAngle = 1.571f; }), "outerConeAngle");
     expectRefused(with(spot, [&](Light& l) { l.outerConeAngle = nan; }), "outerConeAngle");
     expectRefused(with(point, [&](Light& l) { l.sourceRadius = -1; }), "sourceRadius");
     expectRefused(with(point, [&](Light& l) { l.biasMetres = nan; }), "biasMetres");

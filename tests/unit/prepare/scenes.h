@@ -143,7 +143,8 @@ inline Light randomLight(Random& random, const CameraSpec& c) {
     light.direction[1] = static_cast<float>(d.y);
     light.direction[2] = static_cast<float>(d.z);
     light.outerConeAngle =
-        static_cast<float>(random() % 3 == 0 ? uniform(random, 0.002, 0.1) : uniform(random, 0.1, 1.55));
+        static_cast<float>(random() % 3 == 0 ? uniform(random, 0.002, 0.1) : uniform(random, 0.1, 1.5707963));
+    if (random() % 16 == 0) light.outerConeAngle = 1.57079637f;  // pi/2, rounded up
     return light;
 }
 

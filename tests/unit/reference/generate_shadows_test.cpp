@@ -169,8 +169,9 @@ struct BallOverFloor {
     Light light;
     LightModel model;
     ShadowInput input;
-    explicit BallOverFloor(LightType type, const ShadowSetup& setup) {
+    BallOverFloor(LightType type, float outerConeAngle, const ShadowSetup& setup) {
         light.type = type;
+        light.outerConeAngle = outerConeAngle;
         light.position[1] = 4;
         light.direction[1] = -1;
         light.direction[2] = 0;
@@ -179,6 +180,7 @@ struct BallOverFloor {
         input.views = makeShadowViewModels(shadows.views);
         input.atlases = std::move(shadows.atlases);
         model.type = type;
+        model.sixFaces = shadows.lightViews[0].count == gpu::kPointLightFaces;
         model.position = {0, 4, 0};
         model.direction = {0, -1, 0};
         model.casts = true;
@@ -201,13 +203,14 @@ struct BallOverFloor {
 // From 4 m up, a ball of 0.5 m at 2 m shadows the disk of radius 4 tan(asin(0.5 / 2)). Floor elsewhere is lit: no acne.
 TEST(GenerateShadows, ShadowOfABallIsADisk) {
     const double radius = 4 * std::tan(std::asin(0.25));
-    for (const LightType type : {LightType::Point, LightType::Spot}) {
+    for (const auto& [type, angle] : {std::pair(LightType::Point, 0.0f), std::pair(LightType::Spot, 0.785f),
+                                     std::pair(LightType::Spot, 1.57079637f)}) {  // six views, one, six
         for (const bool reversed : {true, false}) {
             ShadowSetup setup;
             setup.viewSizePx = 256;
             setup.reversed = reversed;
             setup.infiniteFar = reversed;
-            BallOverFloor scene(type, setup);
+            BallOverFloor scene(type, angle, setup);
             for (const Filter filter : {Filter::Hard, Filter::Pcf}) {
                 scene.model.filter = filter;
                 Random random(9);
@@ -237,7 +240,7 @@ TEST(GenerateShadows, BoxAroundAPointLightIsLit) {
     input.views = makeShadowViewModels(shadows.views);
     input.atlases = std::move(shadows.atlases);
     LightModel model;
-    model.casts = true;
+    model.casts = model.sixFaces = true;
     model.filter = Filter::Pcf;
     model.firstShadowView = 0;
     model.biasMetres = 0.002;
@@ -269,7 +272,7 @@ TEST(GenerateShadows, BoxAroundAPointLightIsLit) {
 }
 
 TEST(GenerateShadows, WhatNeedsNoSampling) {
-    BallOverFloor scene(LightType::Spot, {});
+    BallOverFloor scene(LightType::Spot, 0.785f, {});
     scene.model.casts = false;
     EXPECT_EQ(scene.onFloor(0, 0).min, 1);
     scene.model.casts = true;
@@ -279,7 +282,7 @@ TEST(GenerateShadows, WhatNeedsNoSampling) {
 }
 
 TEST(GenerateShadows, SubsurfaceBiasReachesThroughThinWalls) {
-    BallOverFloor scene(LightType::Spot, {});
+    BallOverFloor scene(LightType::Spot, 0.785f, {});
     scene.input.subsurfaceBiasMetres = 3.0;  // more than from the floor to the ball's top
     Pixel pixel;
     pixel.background = false;

@@ -45,7 +45,8 @@ gpu::GpuLight toGpu(const LightModel& light, const CameraModel& camera) {
     out.sourceRadius = float(light.sourceRadius);
     out.typeAndFlags =
         std::uint32_t(light.type) | (light.casts ? gpu::kLightCastsBit : 0u) |
-        (light.shadowFades ? gpu::kLightShadowFadesBit : 0u) | light.cascadeCount << gpu::kLightCascadesShift |
+        (light.shadowFades ? gpu::kLightShadowFadesBit : 0u) | (light.sixFaces ? gpu::kLightSixFacesBit : 0u) |
+        light.cascadeCount << gpu::kLightCascadesShift |
         std::uint32_t(light.filter) << gpu::kLightFilterShift | light.pcssPreset << gpu::kLightPcssPresetShift;
     out.lightMask = light.mask;
     out.shadowView = light.firstShadowView;
@@ -99,6 +100,7 @@ TEST(Lights, GpuLightsAreCompared) {
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.typeAndFlags ^= 1u << gpu::kLightFilterShift; }), 1u);
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.typeAndFlags ^= 2u << gpu::kLightPcssPresetShift; }), 1u);
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { ++l.shadowView; }), 1u);
+    EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.typeAndFlags ^= gpu::kLightSixFacesBit; }), 1u);
     constexpr std::uint32_t kSun = gpu::kLightDirectional;
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.sourceRadius *= 1.001f; }, kSun), 1u);  // the angle, not its tangent
     EXPECT_EQ(errorsAfter([](gpu::GpuLight& l) { l.typeAndFlags ^= 7u << gpu::kLightCascadesShift; }, kSun), 1u);

@@ -59,7 +59,9 @@ Plane planeIn(const View& v, F3 p, F3 n, float bias, float toward, float offPlan
     plane.px = v.px(x, y, w);
     const F2 ndc = {x / w, y / w};
     plane.tangent = parallel ? F2{0, 0} : F2{ndc.x * v.scale.x / v.perMetre.x, ndc.y * v.scale.y / v.perMetre.y};
-    const auto depthOf = [&](float z) { return parallel ? v.a + v.b * z : v.a + v.b / std::max(z, 1e-4f); };
+    const auto depthOf = [&](float z) {
+        return parallel ? v.a + v.b * z : v.a + v.b / std::max(z, 1e-3f * std::abs(v.b));
+    };
     plane.ray = std::sqrt(1 + plane.tangent.x * plane.tangent.x + plane.tangent.y * plane.tangent.y);
     plane.depth = depthOf(plane.z - toward * bias);
     if (offPlane < 0) return plane;
@@ -114,7 +116,7 @@ struct Sampler {
                 std::clamp(q.y, v.first.y + margin, v.last.y - margin)};
     }
     [[nodiscard]] bool leaves(F2 q) const {
-        return light.type == LightType::Point &&
+        return light.sixFaces &&
                (q.x < v.first.x + 1 || q.x > v.last.x - 1 || q.y < v.first.y + 1 || q.y > v.last.y - 1);
     }
     [[nodiscard]] Tap elsewhere(F2 q) const;
@@ -218,7 +220,8 @@ bool faces(const LightModel& light, const Pixel& pixel, F3 p) {
 float sample(const LightModel& light, std::uint32_t index, const Pixel& pixel, F3 p, const ShadowInput& input) {
     const View v(input.views[light.firstShadowView + index]);
     if (!v.model.orthographic && v.clip(3, p) <= 0) return 1;
-    float bias = float(light.biasMetres);
+    const float linear = v.model.orthographic ? 1.0f : std::max(v.clip(3, p), 0.0f);
+    float bias = std::min(float(light.biasMetres), float(v.model.mostBias) * linear);
     if (pixel.subsurface) bias = std::max(bias, float(input.subsurfaceBiasMetres));
     const float toward = pixel.subsurface || faces(light, pixel, p) ? 1.0f : -1.0f;
     if (input.bias == BiasMode::Unbiased) bias = 0;
@@ -260,7 +263,7 @@ float visibilityInFloats(const LightModel& light, const Pixel& pixel, F3 p, cons
     const bool directional = light.type == LightType::Directional;
     if (input.facedAwayIsDark && !pixel.subsurface && !faces(light, pixel, p)) return 0;
     if (directional) return sun(light, pixel, p, input);
-    return sample(light, light.type == LightType::Point ? faceOf(p - f3(light.position)) : 0, pixel, p, input);
+    return sample(light, light.sixFaces ? faceOf(p - f3(light.position)) : 0, pixel, p, input);
 }
 
 int storedInFloats(const LightModel& light, const Pixel& pixel, F3 p, F3 eye, const ShadowInput& input) {

@@ -1,6 +1,7 @@
 // The shadow atlas' plan: packing, budget, hysteresis and the views' matrices.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 #include <random>
@@ -55,7 +56,7 @@ TEST(ShadowPlan, SquaresNeverOverlapWhileTheCameraMoves) {
     ShadowPlanCamera camera;
     for (int frame = 0; frame < 100; ++frame) {
         camera.position = {-40.0 + frame * 0.8, 1.7, 3.0};
-        const ShadowPlan plan = planner.plan(lights, camera, camera.position);
+        const ShadowPlan plan = planner.plan(lights, camera, {}, camera.position);
         EXPECT_EQ(plan.lightsWithout, 0u);
         EXPECT_LE(plan.usedTexels, plan.atlasTexels);
         expectDisjointAndInside(plan, settings);
@@ -66,8 +67,8 @@ TEST(ShadowPlan, SquaresNeverOverlapWhileTheCameraMoves) {
 TEST(ShadowPlan, KeepsPlacesWhereSizesStay) {
     ShadowPlanner planner({});
     const std::vector<ShadowLight> lights = randomLights(40, 3);
-    const ShadowPlan first = planner.plan(lights, {}, {});
-    const ShadowPlan second = planner.plan(lights, {}, {});
+    const ShadowPlan first = planner.plan(lights, {}, {}, {});
+    const ShadowPlan second = planner.plan(lights, {}, {}, {});
     ASSERT_EQ(first.views.size(), second.views.size());
     EXPECT_FALSE(second.repacked);
     for (std::size_t i = 0; i < first.views.size(); ++i) {
@@ -77,18 +78,40 @@ TEST(ShadowPlan, KeepsPlacesWhereSizesStay) {
     }
 }
 
+// Whatever was planned before, a plan without history is the first plan of a fresh planner.
+TEST(ShadowPlan, WithoutHistoryThePastDoesNotShow) {
+    const std::vector<ShadowLight> lights = randomLights(40, 5);
+    ShadowPlanner used({});
+    bool historyShows = false;
+    for (int frame = 0; frame < 20; ++frame) {
+        ShadowPlanCamera camera;
+        camera.position = {4.0 * frame - 40.0, 1.7, 3.0};
+        const ShadowPlan kept = used.plan(lights, camera, {}, {}, true);
+        const ShadowPlan now = used.plan(lights, camera, {}, {}, false);
+        const ShadowPlan fresh = ShadowPlanner({}).plan(lights, camera, {}, {}, true);
+        ASSERT_EQ(now.views.size(), fresh.views.size());
+        for (std::size_t i = 0; i < now.views.size(); ++i) {
+            EXPECT_EQ(now.views[i].size, fresh.views[i].size);
+            EXPECT_EQ(now.views[i].x, fresh.views[i].x);
+            EXPECT_EQ(now.views[i].y, fresh.views[i].y);
+            historyShows = historyShows || kept.views[i].size != fresh.views[i].size;
+        }
+    }
+    EXPECT_TRUE(historyShows) << "nothing here could fail";
+}
+
 TEST(ShadowPlan, ShrinksBeforeItDropsAndReportsBoth) {
     ShadowPlanSettings settings;
     settings.atlasSizePx = 256;  // 64 squares of 32
     ShadowPlanner planner(settings);
     std::vector<ShadowLight> lights(10);
     for (std::size_t l = 0; l < lights.size(); ++l) lights[l].position.x = static_cast<double>(l);
-    const ShadowPlan ten = planner.plan(lights, {}, {});
+    const ShadowPlan ten = planner.plan(lights, {}, {}, {});
     EXPECT_EQ(ten.lightsWithout, 0u);
     EXPECT_EQ(ten.lightsShrunk, 10u);
     EXPECT_GT(ten.halvings, 0u);
     lights.resize(12);
-    const ShadowPlan twelve = planner.plan(lights, {}, {});  // 72 squares of 32 do not fit
+    const ShadowPlan twelve = planner.plan(lights, {}, {}, {});  // 72 squares of 32 do not fit
     EXPECT_EQ(twelve.lightsWithout, 2u);
     expectDisjointAndInside(twelve, settings);
 }
@@ -114,16 +137,38 @@ TEST(ShadowPlan, SixFacesCoverEveryDirectionWithTheGuardBand) {
         EXPECT_GT(ndc.z, 0.0f);
         EXPECT_LT(ndc.z, 1.0f);
         const float n = view.nearMetres, f = view.farMetres;
-        EXPECT_NEAR(ndc.z, -n / (f - n) + n * f / (f - n) / (5.0f * a[static_cast<int>(axis)]), 1e-6f);
+        const float expected = -n / (f - n) + n * f / (f - n) / (5.0f * a[static_cast<int>(axis)]);
+        EXPECT_NEAR(ndc.z, expected, 1e-5f * n);
+    }
+}
+
+// Whatever its range is, a lamp has room in its housing, and what is far keeps the precision of floats.
+TEST(ShadowPlan, NearPlanesCutNoHousing) {
+    for (const float range : {0.004f, 2.0f, 60.0f, 1.0e5f}) {
+        EXPECT_LE(shadowNearMetres(range), 0.0011f) << range;
+        ShadowLight light;
+        light.rangeMetres = range;
+        const ShadowView view = makeShadowView(light, 5, 64, 4, {});
+        const auto depthAt = [&](float distance) {
+            const glm::vec4 clip = glm::make_mat4(view.clipFromWorld) * glm::vec4(0.0f, 0.0f, -distance, 1.0f);
+            return clip.z / clip.w;
+        };
+        for (const float share : {1e-7f, 1e-3f, 0.1f, 0.5f, 0.99f}) {
+            const float here = depthAt(share * range), farther = depthAt(share * range * 1.00001f);
+            EXPECT_GT(here, farther) << range << " " << share;
+            EXPECT_LT(here, 1.0f);
+            EXPECT_GT(farther, 0.0f);
+        }
     }
 }
 
 TEST(ShadowPlan, ASpotsConeLiesInsideItsSquare) {
-    for (const float angle : {0.1f, 0.7f, 1.3f, 1.5f}) {
+    for (const float angle : {0.1f, 0.7f, 1.0f, 1.18f}) {
         ShadowLight light;
         light.kind = LightKind::Spot;
         light.outerConeAngle = angle;
         light.direction = glm::normalize(glm::vec3(0.3f, -0.8f, 0.5f));
+        ASSERT_EQ(shadowFaces(light), 1u);
         const ShadowView view = makeShadowView(light, 0, 128, 4, {});
         const glm::vec3 side = glm::normalize(glm::cross(light.direction, glm::vec3(0.1f, 0.2f, 0.9f)));
         const glm::vec3 other = glm::cross(side, light.direction);
@@ -134,6 +179,25 @@ TEST(ShadowPlan, ASpotsConeLiesInsideItsSquare) {
             const glm::vec4 clip = glm::make_mat4(view.clipFromWorld) * glm::vec4(rim * 0.9f, 1.0f);
             EXPECT_LE(std::max(std::abs(clip.x), std::abs(clip.y)) / clip.w, 60.0f / 64.0f + 1e-4f);
         }
+    }
+}
+
+// Up to a hemisphere: texels of one view would grow without end towards its border.
+TEST(ShadowPlan, AWideSpotHasTheFacesOfAPointLight) {
+    ShadowLight point;
+    for (const float angle : {1.19f, 1.4f, 1.57079637f}) {
+        ShadowLight spot;
+        spot.kind = LightKind::Spot;
+        spot.outerConeAngle = angle;
+        ASSERT_EQ(shadowFaces(spot), 6u);
+        for (std::uint32_t face = 0; face < 6; ++face) {
+            const ShadowView a = makeShadowView(spot, face, 128, 4, {}), b = makeShadowView(point, face, 128, 4, {});
+            EXPECT_TRUE(std::ranges::equal(a.clipFromWorld, b.clipFromWorld)) << angle << ", face " << face;
+        }
+        const ShadowLight lights[] = {spot, point};
+        const ShadowPlan plan = ShadowPlanner({}).plan(lights, {}, {}, {});
+        EXPECT_EQ(plan.views.size(), 12u);
+        EXPECT_EQ(plan.firstView[1], 6u);
     }
 }
 

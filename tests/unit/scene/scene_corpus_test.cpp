@@ -49,7 +49,7 @@ void expectWhole(Scene& scene, const std::string& file) {
     const float radius = worldBounds(scene).radius();
     for (std::size_t a = 0; a < scene.animations.size(); ++a) {
         playCompatible(scene, a);
-        EXPECT_LT(animatedBounds(scene, 7).radius(), 6.0f * radius) << file << ", " << scene.animations[a].name;
+        EXPECT_LT(animatedExtent(scene, 7).drawn.radius(), 6.0f * radius) << file << ", " << scene.animations[a].name;
     }
 }
 

@@ -127,11 +127,13 @@ TEST(SceneLoad, LightsMayStateTheirBias) {
     const auto biasOf = [](const std::string& extras) { return loaded(lightGltf(extras)).lights.at(0).biasMetres; };
     EXPECT_FLOAT_EQ(biasOf(R"(,"extras":{"shadowBiasMetres":0.005})"), 0.005f);
     EXPECT_EQ(biasOf(R"(,"extras":{"shadowBiasMetres":0})"), 0.0f);
+    const auto sourceOf = [](const std::string& extras) { return loaded(lightGltf(extras)).lights.at(0).sourceRadius; };
+    EXPECT_FLOAT_EQ(sourceOf(R"(,"extras":{"sourceRadius":0.04})"), 0.04f);
+    EXPECT_EQ(sourceOf(""), 0.0f);
     const float renderersOwn = SceneLight().biasMetres;
     EXPECT_LT(renderersOwn, 0.0f);
     EXPECT_EQ(biasOf(""), renderersOwn);
     EXPECT_EQ(biasOf(R"(,"extras":{"bias":1})"), renderersOwn);
-    EXPECT_EQ(biasOf(R"(,"extras":{"shadowBiasMetres":null})"), renderersOwn);
     EXPECT_EQ(biasOf(R"(,"extras":7)"), renderersOwn);
 }
 
@@ -201,6 +203,24 @@ TEST(SceneLoad, CamerasPerspectiveAndOrthographic) {
     EXPECT_EQ(scene.cameras[0].name, "eye");
     EXPECT_EQ(scene.cameras[0].worldFromCamera[0], glm::vec4(1, 0, 0, 0));  // the scale is gone
     EXPECT_TRUE(std::isinf(scene.cameras[0].farMetres));
+    EXPECT_EQ(scene.cameras[0].widthOverHeight, 0.0f);  // none given
     EXPECT_TRUE(scene.cameras[1].orthographic);
     EXPECT_EQ(scene.cameras[1].orthographicHalfHeight, 3.0f);
+    EXPECT_FLOAT_EQ(scene.cameras[1].widthOverHeight, 2.0f / 3.0f);
+}
+
+TEST(SceneLoad, CamerasKeepTheirAspect) {
+    const auto cameraOf = [](const std::string& camera) {
+        return loaded(triangleGltf(R"(,"cameras":[)" + camera + "]", "", R"([{"mesh":0,"camera":0}])"));
+    };
+    const Scene wide = cameraOf(R"({"type":"perspective","perspective":{"yfov":0.7,"znear":0.1,"aspectRatio":3}})");
+    EXPECT_EQ(wide.cameras.at(0).widthOverHeight, 3.0f);
+    const Scene flipped = cameraOf(R"({"type":"orthographic","orthographic":{"xmag":-4,"ymag":2,"znear":0,"zfar":5}})");
+    EXPECT_EQ(flipped.cameras.at(0).widthOverHeight, 2.0f);
+    for (const char* bad : {R"({"type":"perspective","perspective":{"yfov":0.7,"znear":0.1,"aspectRatio":-3}})",
+                            R"({"type":"orthographic","orthographic":{"xmag":0,"ymag":2,"znear":0,"zfar":5}})"}) {
+        const Scene scene = cameraOf(bad);
+        EXPECT_TRUE(scene.cameras.empty()) << bad;
+        EXPECT_EQ(scene.notes.size(), 1u) << bad;
+    }
 }

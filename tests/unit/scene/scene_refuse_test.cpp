@@ -70,7 +70,7 @@ TEST(SceneRefuse, Vertices) {
     expectRefused(withBytes(16, 3.0e38f), "not finite or beyond");
     expectRefused(replaced(triangleGltf(), R"("POSITION":0)", R"("NORMAL":0)"), "no POSITION");
     expectRefused(replaced(triangleGltf(), R"("POSITION":0)", R"("POSITION":5)"), "accessor 5");
-    expectRefused(replaced(triangleGltf(), R"("POSITION":0)", R"("POSITION":-1)"), "accessor -1");
+    expectRefused(replaced(triangleGltf(), R"("POSITION":0)", R"("POSITION":-1)"), "attributes.POSITION is -1");
     expectRefused(replaced(triangleGltf(), R"("POSITION":0)", R"("POSITION":0,"NORMAL":1)"), "components");
     expectRefused(replaced(triangleGltf(), R"("POSITION":0)", R"("POSITION":1)"), "components");
 }
@@ -88,7 +88,6 @@ TEST(SceneRefuse, Accessors) {
     expectRefused(replaced(good, R"("componentType":5126)", R"("componentType":5130)"), "");
     expectRefused(replaced(good, R"("componentType":5123)", R"("componentType":5126)"), "");
     expectRefused(replaced(good, R"("bufferView":0)", R"("bufferView":9)"), "bufferView 9");
-    expectRefused(replaced(good, R"("bufferView":0,)", ""), "without a bufferView");
     expectRefused(replaced(good, R"("byteLength":36)", R"("byteLength":8)"), "wants");  // less than one element
     expectRefused(replaced(good, R"("byteLength":36)", R"("byteLength":99999)"), "past the end");
     expectRefused(replaced(good, R"("byteOffset":36)", R"("byteOffset":18446744073709551600)"), "past the end");
@@ -103,7 +102,7 @@ TEST(SceneRefuse, Accessors) {
     EXPECT_TRUE(loadText(replaced(good, R"("count":3,"type":"VEC3")", sparse), scene).ok());
     const std::string bad = replaced(good, R"("count":3,"type":"VEC3")", sparse);
     expectRefused(replaced(bad, R"("sparse":{"count":1)", R"("sparse":{"count":4)"), "sparse");
-    expectRefused(replaced(bad, R"("byteOffset":4)", R"("byteOffset":-4)"), "negative");
+    expectRefused(replaced(bad, R"("byteOffset":4)", R"("byteOffset":-4)"), "byteOffset is -4");
     expectRefused(replaced(bad, R"("values":{"bufferView":0})", R"("values":{"bufferView":77})"), "bufferView 77");
     expectRefused(
         R"({"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"componentType":5126,)"
@@ -119,7 +118,7 @@ TEST(SceneRefuse, Indices) {
     expectRefused(triangleJson(dataBuffer(bytes)), "index 200 for 3 vertices");
     expectRefused(replaced(triangleGltf(), R"("indices":1)", R"("indices":8)"), "");
     expectRefused(triangleGltf("", R"(,"material":4)"), "material 4");
-    expectRefused(triangleGltf("", R"(,"mode":9)"), "mode 9");
+    expectRefused(triangleGltf("", R"(,"mode":9)"), "mode is 9");
     expectRefused(
         triangleGltf(R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":3}}}])", R"(,"material":0)"),
         "texture 3");
@@ -137,7 +136,7 @@ TEST(SceneRefuse, Nodes) {
     expectRefused(nodes(R"([{"mesh":0,"scale":[1e39,1,1]}])"), "float");
     expectRefused(nodes(R"([{"mesh":0,"extensions":{"KHR_lights_punctual":{"light":2}}}])"), "light 2");
     expectRefused(replaced(triangleGltf(), R"("scene":0)", R"("scene":4)"), "scene 4");
-    expectRefused(replaced(triangleGltf(), R"("scene":0)", R"("scene":-7)"), "scene -7");
+    expectRefused(replaced(triangleGltf(), R"("scene":0)", R"("scene":-7)"), "scene is -7");
     std::string chain = "[";  // deep, and no trouble
     for (int i = 1; i < 20000; ++i) chain += R"({"children":[)" + std::to_string(i) + "]},";
     Scene scene;
@@ -145,8 +144,13 @@ TEST(SceneRefuse, Nodes) {
 }
 
 TEST(SceneRefuse, LightsWithABiasThatIsNoLength) {
-    for (const char* value : {"-0.001", "-1e-9", "\"2 mm\"", "true", "[0.002]", "1e39"})
+    for (const char* value : {"-0.001", "-1e-9", "1e39"})
         expectRefused(lightGltf(std::string(R"(,"extras":{"shadowBiasMetres":)") + value + "}"), "light 0 'lamp'");
+}
+
+TEST(SceneRefuse, LightsWithASourceThatIsNoLength) {
+    for (const char* value : {"-0.001", "0", "1e16", "1e39"})
+        expectRefused(lightGltf(std::string(R"(,"extras":{"sourceRadius":)") + value + "}"), "light 0 'lamp'");
 }
 
 TEST(SceneRefuse, Extensions) {

@@ -180,6 +180,49 @@ TEST_F(PlantedErrors, LostShadowsLeak) {
     EXPECT_EQ(f.acne, 0u);
 }
 
+// Shadowmaps so coarse that every pixel counts as an edge: acne and leak say nothing, and what says so is told.
+TEST_F(PlantedErrors, WhatIsSetAsideIsTold) {
+    const std::vector<float> lost(seen.receivers.size(), 1.0f);
+    for (const bool soft : {false, true}) {
+        SCOPED_TRACE(soft);
+        desc.soft = soft;
+        desc.subsetOf = 1;
+        const auto all = [&](const std::vector<float>& result) {
+            return figuresOf(truthFor(result), result, soft);
+        };
+        const LightFigures right = all(biased(0.0));
+        EXPECT_LT(right.setAside(), 0.4);
+        LightTruth coarse = truthFor(lost);
+        for (PixelTruth& pixel : coarse.pixels) pixel.edge = true;
+        const LightFigures f = figuresOf(coarse, lost, soft);
+        EXPECT_EQ(f.opaque.acne + f.opaque.leak, 0u);
+        EXPECT_EQ(f.setAside(), 1.0);
+        EXPECT_GT(f.wrongOfSetAside(), 0.1);
+        EXPECT_EQ(f.opaque.comparedPairs, f.opaque.pairs);
+        EXPECT_GT(f.opaque.visibilityError(), 0.1);
+        EXPECT_GT(f.opaque.visibilityError(), 5.0 * right.opaque.visibilityError());
+    }
+}
+
+// The mean over all pairs of what the result is off by.
+TEST_F(PlantedErrors, VisibilityErrorIsTheMeanDifference) {
+    std::vector<float> result = biased(0.0);
+    EXPECT_EQ(judged(result).visibilityError(), 0.0);
+    const auto dark = std::ranges::count_if(truthFor(result).pixels,
+                                            [](const PixelTruth& p) { return p.hard != HardTruth::Lit; });
+    for (float& v : result) v = v < 0.0f ? v : 1.0f;
+    const Figures lost = judged(result);
+    EXPECT_NEAR(lost.visibilityError(), static_cast<double>(dark) / static_cast<double>(lost.pairs), 1e-9);
+    desc.soft = true;
+    desc.subsetOf = 1;
+    const LightTruth soft = truthFor(result);
+    for (std::size_t i = 0; i < soft.indices.size(); ++i)
+        result[soft.indices[i]] = std::abs(soft.pixels[i].soft - 0.25f);  // never negative, and off by 0.25 or less
+    const Figures off = figuresOf(soft, result, true).opaque;
+    EXPECT_LE(off.visibilityError(), 0.25 + 1e-6);
+    EXPECT_GT(off.visibilityError(), 0.2);
+}
+
 TEST_F(PlantedErrors, FaintErrorsStandApart) {
     for (const bool soft : {false, true}) {
         desc.soft = soft;
@@ -341,6 +384,23 @@ TEST(ErrorOf, SoftTruthThatNobodyAskedForDoesNotCount) {
     hidden.subset = true;
     EXPECT_EQ(errorOf(hidden, 0.0f, true), PairError::Acne);
     EXPECT_EQ(errorOf(hidden, -1.0f, true), PairError::NotCounted);
+}
+
+// Where the source is seen in part, a result is wrong that is off by more than a half.
+TEST(ErrorOf, PenumbraeAreJudgedToo) {
+    PixelTruth half;
+    half.hard = HardTruth::Dark;
+    half.subset = true;
+    half.soft = 0.4f;
+    EXPECT_EQ(errorOf(half, 0.0f, true), PairError::None);
+    EXPECT_EQ(errorOf(half, 0.85f, true), PairError::None);
+    EXPECT_EQ(errorOf(half, 1.0f, true), PairError::PenumbraError);
+    half.edge = true;
+    EXPECT_EQ(errorOf(half, 1.0f, true), PairError::PenumbraError);
+    half.subset = false;  // asked for, since result and hard truth disagree
+    EXPECT_EQ(errorOf(half, 1.0f, true), PairError::PenumbraError);
+    half.soft = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(errorOf(half, 1.0f, true), PairError::None) << "nobody has traced it";
 }
 
 TEST(Flicker, CountsChangeWhereNothingChanges) {

@@ -123,18 +123,5 @@ TEST(Subsurface, ABallGlowsAndCastsAShadow) {
     EXPECT_EQ(dark[0], dark[1]) << "the floor's shadow";
 }
 
-// Scaled to nothing along an axis, an instance is not drawn.
-TEST(TracedScene, FlatInstancesBlockNothing) {
-    SceneBuilder b;
-    b.quad({-1, 1, -1}, {1, 1, -1}, {1, 1, 1}, {-1, 1, 1});
-    Pose pose = restPose(b.scene);
-    const ShadowRay ray = {{0.1, 0.0, 0.2}, {0.1, 2.0, 0.2}};
-    EXPECT_TRUE(TracedScene(b.scene, pose, glm::dvec3(0.0)).blocked(ray));
-    pose.worldFromObject[0] = glm::dmat4(1.0);
-    pose.worldFromObject[0][1] = glm::dvec4(0.0);
-    const ShadowRay low = {{0.1, -1.0, 0.2}, {0.1, 2.0, 0.2}};
-    EXPECT_FALSE(TracedScene(b.scene, pose, glm::dvec3(0.0)).blocked(low));
-}
-
 }  // namespace
 }  // namespace gnomon::renderer::truth_test

@@ -202,6 +202,57 @@ TEST_F(MaskedQuad, CutoffAndFactorsCount) {
     EXPECT_TRUE(blockedAt(0.75, 0.2));
 }
 
+// Alpha equal to the cut-off is opaque, however the interpolation rounds.
+TEST_F(MaskedQuad, AlphaEqualToTheCutoffBlocks) {
+    material.baseColourTexture.image = kNone;
+    Primitive& primitive = b.scene.meshes[0].primitives[0];
+    for (const float alpha : {0.5f, 0.3f, 0.9f, 1.0f, 100.0f / 255.0f}) {
+        for (const bool byVertices : {false, true}) {
+            material.alphaCutoff = alpha;
+            material.baseColour.a = byVertices ? 1.0f : alpha;
+            primitive.colours.assign(4, glm::vec4(1.0f, 1.0f, 1.0f, byVertices ? alpha : 1.0f));
+            const TracedScene traced(b.scene, restPose(b.scene), {0.1, 0.2, 0.3});
+            int open = 0;
+            for (int i = 0; i < 2000; ++i) {
+                const glm::dvec3 p =
+                    glm::dvec3(std::fmod(0.618034 * i, 0.98) + 0.01, 0.0, std::fmod(0.754878 * i, 0.98) + 0.01) -
+                    traced.origin();
+                open += traced.blocked({p, p + glm::dvec3(0.0, 2.0, 0.0)}) ? 0 : 1;
+            }
+            EXPECT_EQ(open, 0) << alpha << " " << byVertices;
+            material.alphaCutoff = alpha + 1.0f / 255.0f;  // one step of eight bits more: cut out
+            EXPECT_FALSE(blockedAt(0.3, 0.4)) << alpha << " " << byVertices;
+        }
+    }
+}
+
+// A scale of zero along one axis leaves a flat thing, which blocks. Along two it leaves a line, which does not.
+TEST(TracedScene, FlatInstancesBlockAndLinesDoNot) {
+    SceneBuilder b;  // a roof that stands on edge, and is pressed flat
+    b.quad({-1, 0, -1}, {1, 0, -1}, {1, 5, 1}, {-1, 5, 1});
+    Pose pose = restPose(b.scene);
+    const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), 0.4, glm::dvec3(0, 1, 0));
+    const auto blocks = [&](const glm::dvec3& scale) {
+        pose.worldFromObject[0] =
+            glm::translate(glm::dmat4(1.0), {0, 1, 0}) * turn * glm::scale(glm::dmat4(1.0), scale);
+        const TracedScene traced(b.scene, pose, glm::dvec3(0.0));
+        const ShadowRay ray = {{0.1, 0.0, 0.2}, {0.1, 2.0, 0.2}};
+        if (traced.blocked(ray)) {
+            EXPECT_NEAR(traced.nearestBlocker(ray), 1.0, 1e-9);
+        }
+        return traced.blocked(ray);
+    };
+    EXPECT_TRUE(blocks({1, 0, 1}));
+    EXPECT_TRUE(blocks({-1, 0, 1}));
+    EXPECT_FALSE(blocks({1, 0, 0}));
+    EXPECT_FALSE(blocks({0, 0, 1}));
+    EXPECT_FALSE(blocks({0, 0, 0}));
+    // Smaller than any threshold on a determinant would have it.
+    b.scene.meshes[0].primitives[0].positions = {
+        {-1e14f, 0, -1e14f}, {1e14f, 0, -1e14f}, {1e14f, 0, 1e14f}, {-1e14f, 0, 1e14f}};
+    EXPECT_TRUE(blocks({1e-14, 1e-14, 1e-14}));
+}
+
 TEST(TracedScene, PoseMovesTriangles) {
     SceneBuilder b;
     b.quad({-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1});

@@ -1,0 +1,34 @@
+#include "image/renderer/verified.h"
+
+namespace gnomon::renderer::image_test {
+
+Verified verified(const Device& device, const View3d& view, const RendererDesc& desc) {
+    Renderer renderer(device, view.scene, desc, pipelinesOf(device));
+    Verified out;
+    out.picture = draw(renderer, view.camera, ShadowMode::Deferred).linear;
+    const Pose pose = poseAt(view.scene, 0.0);
+    const SceneCamera camera = posedCamera(view.scene, pose, view.camera);
+    const TracedScene traced(
+        view.scene, pose, glm::dvec3(camera.worldFromCamera[3]),
+        {desc.frame.drawing.subsurfaceFronts, static_cast<double>(desc.frame.subsurfaceBiasMetres)});
+    const TruthExtent extent = {desc.frame.widthPx, desc.frame.heightPx};
+    const std::vector<TruthReceiver> receivers =
+        receiversOf(traced, camera, extent.widthPx, extent.heightPx, renderer.readTriangleIds());
+    for (std::uint32_t i = 0; i < pose.lights.size(); ++i) {
+        LightTruthDesc light;
+        light.light = pose.lights[i];
+        light.views = renderer.shadowViews(i);
+        light.viewsOrigin = renderer.frameOrigin();
+        light.soft = desc.frame.filters.front() == Filter::Pcss;
+        light.subsetOf = 4;
+        out.visibility = renderer.readVisibility(i);
+        out.truth = traceLight(traced, receivers, extent, light);
+        completeSoftTruth(out.truth, traced, receivers, light, out.visibility);
+        const LightFigures figures = figuresOf(out.truth, out.visibility, light.soft);
+        out.figures += figures.opaque;
+        out.subsurface += figures.subsurface;
+    }
+    return out;
+}
+
+}  // namespace gnomon::renderer::image_test

@@ -159,8 +159,8 @@ if(FLAVOUR STREQUAL subdirectory)
     check_picture(${root}/build/minimal_host/minimal_host)
 else()
     set(library ${root}/library)
-    if(FLAVOUR STREQUAL package AND NOT SANITIZED)
-        set(library ${BUILD_DIR})  # else made anew: hosts of sanitized libraries need sanitizers
+    if(FLAVOUR STREQUAL package AND IS_RELEASE)
+        set(library ${BUILD_DIR})  # else made anew: debug information names folders, and sanitizers want sanitized hosts
     elseif(FLAVOUR STREQUAL package)
         build(${SOURCE_DIR} ${library} -DGNOMON_LIBRARY_ONLY=ON)
     else()

@@ -1,8 +1,5 @@
 #include "app/frame_json.h"
 
-#include <fmt/format.h>
-
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -23,23 +20,6 @@ Json lightsOf(const PrepareReport& lights) {
             {"dropped", lights.dropped},
             {"directional", lights.directional},
             {"casting", lights.casting}};
-}
-
-const char* nameOf(renderer::LightKind kind) {
-    switch (kind) {
-        case renderer::LightKind::Point:
-            return "point";
-        case renderer::LightKind::Spot:
-            return "spot";
-        case renderer::LightKind::Directional:
-            return "directional";
-    }
-    return "";
-}
-
-// A float's own shortest digits: 0.002, where the nearest double says 0.0020000000949949026.
-double shortest(float value) {
-    return std::strtod(fmt::format("{}", value).c_str(), nullptr);
 }
 
 // What each light was given or, where nobody gave it, got.
@@ -83,6 +63,18 @@ Json memoryOf(const std::vector<renderer::MemoryUseRow>& rows) {
 }
 
 }  // namespace
+
+const char* nameOf(renderer::LightKind kind) {
+    switch (kind) {
+        case renderer::LightKind::Point:
+            return "point";
+        case renderer::LightKind::Spot:
+            return "spot";
+        case renderer::LightKind::Directional:
+            return "directional";
+    }
+    return "";
+}
 
 Json describe(const Session& session) {
     const renderer::DeviceInfo& info = session.device().info();

@@ -16,6 +16,8 @@ Json describe(const Session& session);
 Json sortOf(Phase phase, RowKind kind);
 Json countersOf(const FrameResult& result);
 Json describe(const Session& session, const FrameResult& result);
+/// "point", "spot" or "directional".
+const char* nameOf(renderer::LightKind kind);
 void writeJson(const Json& json, const std::filesystem::path& file);
 
 }  // namespace gnomon::app

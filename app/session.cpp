@@ -68,7 +68,10 @@ void turnOffOthers(Scene& scene, const std::vector<std::uint32_t>& only) {
     if (only.empty()) return;
     for (const std::uint32_t light : only) checkLight(light, scene);
     for (std::uint32_t i = 0; i < scene.lights.size(); ++i)
-        if (std::ranges::find(only, i) == only.end()) scene.lights[i].intensity = 0.0f;
+        if (std::ranges::find(only, i) == only.end()) {
+            scene.lights[i].intensity = 0.0f;
+            scene.lights[i].casts = false;  // nor is a shadowmap drawn for it
+        }
 }
 
 Scene loadScene(const Settings& settings, const renderer::RendererDesc& desc) {

@@ -338,13 +338,16 @@ std::string rangeOf(const Setting& setting) {
     return fmt::format("{} to {}", setting.least, setting.most);
 }
 
+double shortest(float value) {
+    return std::strtod(fmt::format("{}", value).c_str(), nullptr);
+}
+
 nlohmann::ordered_json valueOf(const Setting& setting, const Settings& settings) {
     return std::visit(
         [&](auto member) {
             const auto& value = settings.*member;
-            // A float's own shortest digits: 0.002, where the nearest double says 0.0020000000949949026.
             if constexpr (std::is_same_v<decltype(member), float Settings::*>)
-                return nlohmann::ordered_json(std::strtod(fmt::format("{}", value).c_str(), nullptr));
+                return nlohmann::ordered_json(shortest(value));
             else
                 return nlohmann::ordered_json(value);
         },

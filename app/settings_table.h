@@ -37,6 +37,8 @@ std::span<const Setting> settingsTable();
 std::string rangeOf(const Setting& setting);
 /// The value that it has.
 nlohmann::ordered_json valueOf(const Setting& setting, const Settings& settings);
+/// A float's own shortest digits: 0.002, where the nearest double says 0.0020000000949949026.
+double shortest(float value);
 /// All of them, by key.
 nlohmann::ordered_json valuesOf(const Settings& settings);
 /// A page of Markdown: one table per group.

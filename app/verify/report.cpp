@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/frame_json.h"
+
 namespace gnomon::app {
 
 std::string percent(double share) {
@@ -14,18 +16,6 @@ namespace {
 
 using renderer::Figures;
 using renderer::LightFigures;
-
-const char* nameOf(renderer::LightKind kind) {
-    switch (kind) {
-        case renderer::LightKind::Point:
-            return "point";
-        case renderer::LightKind::Spot:
-            return "spot";
-        case renderer::LightKind::Directional:
-            return "directional";
-    }
-    return "";
-}
 
 void printRow(const std::string& name, const Figures& f, double setAside) {
     const bool soft = f.penumbraPairs != 0;

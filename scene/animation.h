@@ -22,11 +22,11 @@ struct Primitive;
 struct Node {
     std::string name;
     std::uint32_t parent = 0xFFFFFFFFu;  ///< kNone: a root
-    glm::vec3 translation{0.0f};
-    glm::quat rotation{1.0f, 0.0f, 0.0f, 0.0f};  ///< unit
-    glm::vec3 scale{1.0f};
-    std::vector<float> weights;       ///< of the morph targets of instances on this node; empty: their mesh's
-    std::optional<glm::mat4> matrix;  ///< in place of the three, where they cannot express it; no channel may move it
+    glm::dvec3 translation{0.0};
+    glm::dquat rotation{1.0, 0.0, 0.0, 0.0};  ///< unit
+    glm::dvec3 scale{1.0};
+    std::vector<float> weights;        ///< of the morph targets of instances on this node; empty: their mesh's
+    std::optional<glm::dmat4> matrix;  ///< in place of the three, where they cannot express it; no channel may move it
 };
 
 struct Skin {

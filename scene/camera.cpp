@@ -26,17 +26,22 @@ glm::mat4 lookingAt(const glm::vec3& eye, const glm::vec3& target) {
 }
 
 // The whole of `text` as a finite number.
-bool readNumber(std::string_view text, float& out) {
+template <class Number>
+bool readNumber(std::string_view text, Number& out) {
     while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
     while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
     return error == std::errc() && end == text.data() + text.size() && std::isfinite(out);
 }
 
-bool readPoint(std::string_view text, glm::vec3& out) {
+// In the file's coordinates; comes out relative to the scene's origin.
+bool readPoint(std::string_view text, const glm::dvec3& origin, glm::vec3& out) {
     for (int c = 0; c < 3; ++c) {
         const std::size_t comma = text.find(',');
-        if ((comma == std::string_view::npos) != (c == 2) || !readNumber(text.substr(0, comma), out[c])) return false;
+        double value = 0.0;
+        if ((comma == std::string_view::npos) != (c == 2) || !readNumber(text.substr(0, comma), value)) return false;
+        out[c] = static_cast<float>(value - origin[c]);
+        if (!std::isfinite(out[c])) return false;
         text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
     }
     return true;
@@ -136,7 +141,7 @@ Result parseCamera(std::string_view text, const Scene& scene, SceneCamera& camer
     }
     glm::vec3 eye, target;
     float degrees = 60.0f;
-    if (count < 2 || !readPoint(parts[0], eye) || !readPoint(parts[1], target) ||
+    if (count < 2 || !readPoint(parts[0], scene.origin, eye) || !readPoint(parts[1], scene.origin, target) ||
         (count == 3 && !readNumber(parts[2], degrees)))
         return wrongCamera(text);
     const float distance = glm::length(eye - target);

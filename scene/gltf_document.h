@@ -38,9 +38,12 @@ const T& at(const std::vector<T>& all, int index, std::string_view kind, std::st
 }
 
 /// A JSON number as a float, or a refusal when it does not fit.
-inline float toFloat(double value, std::string_view what) {
+inline double inFloatRange(double value, std::string_view what) {
     if (!(std::abs(value) <= 3.0e38)) refuse("{} is {}, beyond what a float holds", what, value);
-    return static_cast<float>(value);
+    return value;
+}
+inline float toFloat(double value, std::string_view what) {
+    return static_cast<float>(inFloatRange(value, what));
 }
 
 /// Member of an extension's object, or null.

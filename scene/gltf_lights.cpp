@@ -46,7 +46,7 @@ void addLight(Document& document, const PlacedNode& node, Scene& scene) {
     }
     light.position = glm::vec3(node.worldFromNode[3]);
     // A scale of zero along its axis hides the direction; the two other axes still tell it.
-    const glm::dmat3 axes(glm::mat3(node.worldFromNode));
+    const glm::dmat3 axes(node.worldFromNode);
     const glm::dvec3 backwards = axes[2] != glm::dvec3(0.0) ? axes[2] : glm::cross(axes[0], axes[1]);
     const double length = glm::length(backwards);
     if (light.kind != LightKind::Point && !(length > 0.0))
@@ -91,13 +91,13 @@ void addCamera(Document& document, const PlacedNode& node, Scene& scene) {
         SceneCamera camera;
         camera.name = carrier.name.empty() ? source.name : carrier.name;
         // Scale and shear of the node do not belong to the view.
-        const glm::vec3 z(node.worldFromNode[2]), y(node.worldFromNode[1]);
-        const glm::vec3 x = glm::cross(y, z);
-        if (!(glm::length(z) > 0.0f) || !(glm::length(x) > 0.0f))
+        const glm::dvec3 z(node.worldFromNode[2]), y(node.worldFromNode[1]);
+        const glm::dvec3 x = glm::cross(y, z);
+        if (!(glm::length(z) > 0.0) || !(glm::length(x) > 0.0))
             refuse("{} has a transform without an inverse", carrierName);
-        const glm::vec3 right = glm::normalize(x), back = glm::normalize(z);
-        camera.worldFromCamera = glm::mat4(glm::vec4(right, 0.0f), glm::vec4(glm::cross(back, right), 0.0f),
-                                           glm::vec4(back, 0.0f), node.worldFromNode[3]);
+        const glm::dvec3 right = glm::normalize(x), back = glm::normalize(z);
+        camera.worldFromCamera = glm::mat4(glm::dmat4(glm::dvec4(right, 0.0), glm::dvec4(glm::cross(back, right), 0.0),
+                                                      glm::dvec4(back, 0.0), node.worldFromNode[3]));
         double nearest = source.perspective.znear, farthest = source.perspective.zfar;
         if (source.type == "orthographic") {
             camera.orthographic = true;

@@ -26,13 +26,13 @@ AnimationChannel::Interpolation interpolationOf(const std::string& name, const s
     refuse("{} has the unknown interpolation '{}'", user, name.substr(0, 40));
 }
 
-void normaliseRotations(AnimationChannel& channel, const std::string& user) {
+// They are made unit where they are sampled, in double.
+void checkRotations(const AnimationChannel& channel, const std::string& user) {
     const bool spline = channel.interpolation == AnimationChannel::Interpolation::CubicSpline;
     for (std::size_t k = 0; k < channel.times.size(); ++k) {
-        float* q = channel.values.data() + (spline ? 3 * k + 1 : k) * 4;  // tangents stay
-        const float length = glm::length(glm::vec4(q[0], q[1], q[2], q[3]));
-        if (!(length > 1.0e-6f)) refuse("{} has a rotation that is no quaternion", user);
-        for (int c = 0; c < 4; ++c) q[c] /= length;
+        const float* q = channel.values.data() + (spline ? 3 * k + 1 : k) * 4;
+        if (!(glm::length(glm::vec4(q[0], q[1], q[2], q[3])) > 1.0e-6f))
+            refuse("{} has a rotation that is no quaternion", user);
     }
 }
 
@@ -143,7 +143,7 @@ void MotionLoader::readValues(int accessor, std::size_t width, const std::string
             refuse("{} hold a number that is not finite or beyond {:g}", name, kMaxValue);
         channel.values[i] = value;
     }
-    if (channel.path == AnimationChannel::Path::Rotation) normaliseRotations(channel, user);
+    if (channel.path == AnimationChannel::Path::Rotation) checkRotations(channel, user);
 }
 
 // False where it moves nothing that is drawn: such a channel is not even looked at.

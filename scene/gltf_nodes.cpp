@@ -1,36 +1,38 @@
 #include "scene/gltf_nodes.h"
 
-#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
+
+#include "scene/pose.h"
 
 namespace gnomon::renderer::gltf {
 namespace {
 
-glm::vec3 vector3(const std::vector<double>& numbers, glm::vec3 otherwise, const char* what, const std::string& user) {
+glm::dvec3 vector3(const std::vector<double>& numbers, glm::dvec3 otherwise, const char* what,
+                   const std::string& user) {
     if (numbers.empty()) return otherwise;
     if (numbers.size() != 3) refuse("the {} of {} has {} numbers", what, user, numbers.size());
-    return {toFloat(numbers[0], user), toFloat(numbers[1], user), toFloat(numbers[2], user)};
+    return {inFloatRange(numbers[0], user), inFloatRange(numbers[1], user), inFloatRange(numbers[2], user)};
 }
 
-glm::mat4 readMatrix(const std::vector<double>& numbers, const std::string& user) {
+// Exporters write floats: what rounds to 0 and 1 is meant so.
+bool isAffine(const glm::dmat4& m) {
+    const auto rounded = [](double value) { return static_cast<float>(value); };
+    return rounded(m[0].w) == 0.0f && rounded(m[1].w) == 0.0f && rounded(m[2].w) == 0.0f && rounded(m[3].w) == 1.0f;
+}
+
+glm::dmat4 readMatrix(const std::vector<double>& numbers, const std::string& user) {
     if (numbers.size() != 16) refuse("the matrix of {} has {} numbers", user, numbers.size());
-    glm::mat4 matrix;
-    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = toFloat(numbers[static_cast<std::size_t>(i)], user);
-    if (matrix[0].w != 0.0f || matrix[1].w != 0.0f || matrix[2].w != 0.0f || matrix[3].w != 1.0f)
-        refuse("the matrix of {} is not affine", user);
+    glm::dmat4 matrix;
+    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = inFloatRange(numbers[static_cast<std::size_t>(i)], user);
+    if (!isAffine(matrix)) refuse("the matrix of {} is not affine", user);
+    matrix[0].w = matrix[1].w = matrix[2].w = 0.0;
+    matrix[3].w = 1.0;
     return matrix;
 }
 
-glm::mat4 localTransform(const Node& node) {
-    if (node.matrix) return *node.matrix;
-    return glm::translate(glm::mat4(1.0f), node.translation) * glm::mat4_cast(node.rotation) *
-           glm::scale(glm::mat4(1.0f), node.scale);
-}
-
-void checkFinite(const glm::mat4& matrix, const std::string& user) {
+void checkFinite(const glm::dmat4& matrix, const std::string& user) {
     for (int i = 0; i < 16; ++i)
-        if (!(std::abs(matrix[i / 4][i % 4]) < 1.0e30f))
-            refuse("the transform of {} leaves the range of a float", user);
+        if (!(std::abs(matrix[i / 4][i % 4]) < 1.0e30)) refuse("the transform of {} leaves the range of a float", user);
 }
 
 std::vector<int> sceneRoots(Document& document) {
@@ -64,18 +66,18 @@ std::vector<PlacedNode> placeNodes(Document& document) {
     const auto& nodes = document.model().nodes;
     std::vector<bool> reached(nodes.size(), false);
     std::vector<PlacedNode> placed, pending;
-    const auto push = [&](int index, const glm::mat4& worldFromParent, const std::string& user) {
+    const auto push = [&](int index, const glm::dmat4& worldFromParent, const std::string& user) {
         const tinygltf::Node& node = at(nodes, index, "node", user);
         const std::string name = nodeName(document, index);
         if (reached[static_cast<std::size_t>(index)])
             refuse("{} is reached twice, from {} and earlier: the nodes must form a tree", name, user);
         reached[static_cast<std::size_t>(index)] = true;
-        const glm::mat4 world = worldFromParent * localTransform(readNode(node, name));
+        const glm::dmat4 world = worldFromParent * localTransform(readNode(node, name));
         checkFinite(world, name);
         pending.push_back({index, world});
     };
     std::vector<int> roots = sceneRoots(document);
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root) push(*root, glm::mat4(1.0f), "the scene");
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root) push(*root, glm::dmat4(1.0), "the scene");
     while (!pending.empty()) {
         const PlacedNode current = pending.back();
         pending.pop_back();
@@ -109,14 +111,14 @@ Node readNode(const tinygltf::Node& source, const std::string& user) {
     }
     if (!source.rotation.empty()) {
         if (source.rotation.size() != 4) refuse("the rotation of {} has {} numbers", user, source.rotation.size());
-        const glm::vec4 q(toFloat(source.rotation[0], user), toFloat(source.rotation[1], user),
-                          toFloat(source.rotation[2], user), toFloat(source.rotation[3], user));
-        const float length = glm::length(q);
-        if (!(length > 1.0e-6f) || !std::isfinite(length)) refuse("the rotation of {} is no quaternion", user);
-        node.rotation = glm::quat(q.w / length, q.x / length, q.y / length, q.z / length);
+        const glm::dvec4 q(inFloatRange(source.rotation[0], user), inFloatRange(source.rotation[1], user),
+                           inFloatRange(source.rotation[2], user), inFloatRange(source.rotation[3], user));
+        const double length = glm::length(q);
+        if (!(length > 1.0e-6) || !(length < 1.0e19)) refuse("the rotation of {} is no quaternion", user);
+        node.rotation = glm::dquat(q.w / length, q.x / length, q.y / length, q.z / length);
     }
-    node.translation = vector3(source.translation, glm::vec3(0.0f), "translation", user);
-    node.scale = vector3(source.scale, glm::vec3(1.0f), "scale", user);
+    node.translation = vector3(source.translation, glm::dvec3(0.0), "translation", user);
+    node.scale = vector3(source.scale, glm::dvec3(1.0), "scale", user);
     return node;
 }
 

@@ -13,7 +13,7 @@ namespace gnomon::renderer::gltf {
 
 struct PlacedNode {
     int index = 0;
-    glm::mat4 worldFromNode{1.0f};
+    glm::dmat4 worldFromNode{1.0};  ///< in the file's coordinates, whatever Scene::origin will be
 };
 
 /// "node 3 'Wheel'"

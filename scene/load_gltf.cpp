@@ -9,6 +9,7 @@
 #include "scene/gltf_material.h"
 #include "scene/gltf_motion.h"
 #include "scene/gltf_nodes.h"
+#include "scene/origin.h"
 #include "scene/pose.h"
 
 namespace gnomon::renderer {
@@ -43,6 +44,7 @@ public:
         for (LoadedMesh& mesh : loaded_) finishMesh(mesh);
         motion_.loadAnimations();
         checkRestPose();
+        moveToOrigin();
     }
 
 private:
@@ -94,8 +96,14 @@ private:
         const std::size_t lights = scene_.lights.size(), cameras = scene_.cameras.size();
         addLight(document_, node, scene_);
         addCamera(document_, node, scene_);
-        if (scene_.lights.size() > lights) scene_.lights.back().node = motion_.useIfMoving(node.index, "a light");
-        if (scene_.cameras.size() > cameras) scene_.cameras.back().node = motion_.useIfMoving(node.index, "a camera");
+        if (scene_.lights.size() > lights) {
+            scene_.lights.back().node = motion_.useIfMoving(node.index, "a light");
+            lightPlaces_.emplace_back(node.worldFromNode[3]);
+        }
+        if (scene_.cameras.size() > cameras) {
+            scene_.cameras.back().node = motion_.useIfMoving(node.index, "a camera");
+            cameraPlaces_.emplace_back(node.worldFromNode[3]);
+        }
     }
 
     void addMesh(const PlacedNode& node) {
@@ -139,18 +147,19 @@ private:
     }
 
     // False, with a note, for what will never be seen.
-    bool canPlace(const LoadedMesh& mesh, const glm::mat4& worldFromObject, bool moves, const std::string& user) {
-        const glm::mat3 linear(worldFromObject);
-        if (!moves && linear == glm::mat3(0.0f)) {
+    bool canPlace(const LoadedMesh& mesh, const glm::dmat4& worldFromObject, bool moves, const std::string& user) {
+        const glm::dmat3 linear(worldFromObject);
+        if (!moves && linear == glm::dmat3(0.0)) {
             document_.note(fmt::format("{} has a scale of zero on all axes and is not drawn.", user));
             return false;
         }
         for (const Primitive& primitive : mesh.primitives) {
             const Bounds& b = primitive.bounds;
             for (int corner = 0; corner < 8; ++corner) {
-                const glm::vec3 p(corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y,
-                                  corner & 4 ? b.max.z : b.min.z);
-                if (!(glm::length(glm::vec3(worldFromObject * glm::vec4(p, 1.0f))) < kFarthestUnits))
+                const glm::dvec3 p(corner & 1 ? b.max.x : b.min.x, corner & 2 ? b.max.y : b.min.y,
+                                   corner & 4 ? b.max.z : b.min.z);
+                const glm::dvec3 placed(worldFromObject * glm::dvec4(p, 1.0));
+                if (!(glm::length(placed) < static_cast<double>(kFarthestUnits)))
                     refuse("{} is placed beyond 1e15 units from the origin", user);
             }
         }
@@ -229,9 +238,27 @@ private:
         }
     }
 
+    // Last, because the origin depends on everything that is drawn.
+    void moveToOrigin() {
+        std::vector<glm::dvec3> nodes;
+        for (const PlacedNode& node : placed_) nodes.emplace_back(node.worldFromNode[3]);
+        scene_.origin = originFor(scene_, nodes, lightPlaces_);
+        if (scene_.origin == glm::dvec3(0.0)) return;
+        for (Instance& instance : scene_.instances)
+            if (instance.skin == kNone) instance.worldFromObject[3] -= glm::dvec4(scene_.origin, 0.0);
+        for (std::size_t i = 0; i < lightPlaces_.size(); ++i)
+            scene_.lights[i].position = glm::vec3(lightPlaces_[i] - scene_.origin);
+        for (std::size_t i = 0; i < cameraPlaces_.size(); ++i)
+            scene_.cameras[i].worldFromCamera[3] = glm::vec4(glm::vec3(cameraPlaces_[i] - scene_.origin), 1.0f);
+        document_.note(fmt::format("The scene is drawn relative to {}, {}, {}.", scene_.origin.x, scene_.origin.y,
+                                   scene_.origin.z));
+        checkRestPose();
+    }
+
     Document& document_;
     Scene& scene_;
     std::vector<PlacedNode> placed_;
+    std::vector<glm::dvec3> lightPlaces_, cameraPlaces_;  // as in the scene, in the file's coordinates
     MaterialLoader materials_;
     MotionLoader motion_;
     std::vector<LoadedMesh> loaded_;

@@ -36,18 +36,15 @@ bool isNear(const glm::dmat4& a, const glm::dmat4& b) {
     return isNear(a[0], b[0]) && isNear(a[1], b[1]) && isNear(a[2], b[2]) && isNear(a[3], b[3]);
 }
 
-glm::dmat4 localTransform(const Node& node) {
-    if (node.matrix) return glm::dmat4(*node.matrix);
-    const glm::dquat rotation(node.rotation);
-    return glm::scale(glm::translate(glm::dmat4(1.0), glm::dvec3(node.translation)) * glm::mat4_cast(rotation),
-                      glm::dvec3(node.scale));
-}
-
-std::vector<glm::dmat4> worldTransforms(const std::vector<Node>& nodes, double timeSeconds) {
+// Relative to `origin`: what lies there keeps all of its digits, however far out that is.
+std::vector<glm::dmat4> worldTransforms(const std::vector<Node>& nodes, const glm::dvec3& origin, double timeSeconds) {
     std::vector<glm::dmat4> world(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         world[i] = localTransform(nodes[i]);
-        if (nodes[i].parent != kNone) world[i] = world[nodes[i].parent] * world[i];
+        if (nodes[i].parent != kNone)
+            world[i] = world[nodes[i].parent] * world[i];
+        else
+            world[i][3] -= glm::dvec4(origin, 0.0);
         for (int k = 0; k < 16; ++k)
             if (!(std::abs(world[i][k / 4][k % 4]) < static_cast<double>(kFarthestUnits)))
                 throw PoseError(fmt::format("The node '{}' is thrown beyond {:g} units from the origin at {:g} s.",
@@ -57,7 +54,7 @@ std::vector<glm::dmat4> worldTransforms(const std::vector<Node>& nodes, double t
 }
 
 void apply(const AnimationChannel& channel, double seconds, Node& node) {
-    float v[4];
+    double v[4];
     switch (channel.path) {
         case AnimationChannel::Path::Translation:
             sampleChannel(channel, seconds, std::span(v, 3));
@@ -65,16 +62,18 @@ void apply(const AnimationChannel& channel, double seconds, Node& node) {
             break;
         case AnimationChannel::Path::Rotation:
             sampleChannel(channel, seconds, std::span(v, 4));
-            node.rotation = glm::quat(v[3], v[0], v[1], v[2]);
+            node.rotation = glm::dquat(v[3], v[0], v[1], v[2]);
             break;
         case AnimationChannel::Path::Scale:
             sampleChannel(channel, seconds, std::span(v, 3));
             node.scale = {v[0], v[1], v[2]};
             break;
-        case AnimationChannel::Path::Weights:
-            node.weights.resize(channelWidth(channel));
-            sampleChannel(channel, seconds, node.weights);
+        case AnimationChannel::Path::Weights: {
+            std::vector<double> weights(channelWidth(channel));
+            sampleChannel(channel, seconds, weights);
+            node.weights.assign(weights.begin(), weights.end());
             break;
+        }
     }
 }
 
@@ -115,7 +114,7 @@ void place(const Scene& scene, Pose& pose) {
     pose.worldFromObject.resize(scene.instances.size());
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
-        const glm::dmat4 rest(instance.worldFromObject);
+        const glm::dmat4& rest = instance.worldFromObject;
         if (instance.skin != kNone) {
             const glm::dvec3 joint(pose.worldFromNode[scene.skins[instance.skin].joints.front()][3]);
             pose.worldFromObject[i] =
@@ -174,13 +173,18 @@ void deform(const Scene& scene, const std::vector<Node>& nodes, Pose& pose) {
 void finish(const Scene& scene, const std::vector<Node>& nodes, double timeSeconds, Pose& pose) {
     pose.timeSeconds = timeSeconds;
     if (pose.worldFromNodeAtRest.size() != scene.nodes.size())
-        pose.worldFromNodeAtRest = worldTransforms(scene.nodes, timeSeconds);
-    pose.worldFromNode = worldTransforms(nodes, timeSeconds);
+        pose.worldFromNodeAtRest = worldTransforms(scene.nodes, scene.origin, timeSeconds);
+    pose.worldFromNode = worldTransforms(nodes, scene.origin, timeSeconds);
     place(scene, pose);
     deform(scene, nodes, pose);
 }
 
 }  // namespace
+
+glm::dmat4 localTransform(const Node& node) {
+    if (node.matrix) return *node.matrix;
+    return glm::scale(glm::translate(glm::dmat4(1.0), node.translation) * glm::mat4_cast(node.rotation), node.scale);
+}
 
 bool deforms(const Instance& instance, const Primitive& primitive) {
     return !primitive.targets.empty() || (instance.skin != kNone && !primitive.joints.empty());
@@ -244,7 +248,7 @@ Scene posedScene(const Scene& scene, const Pose& pose) {
     }
     for (std::size_t i = 0; i < out.instances.size(); ++i) {
         Instance& instance = out.instances[i];
-        instance.worldFromObject = glm::mat4(pose.worldFromObject[i]);
+        instance.worldFromObject = pose.worldFromObject[i];
         instance.node = instance.skin = kNone;
     }
     for (const PosedPrimitive& posed : pose.deformed) {
@@ -270,6 +274,7 @@ Scene posedScene(const Scene& scene, const Pose& pose) {
 
 Scene posablePart(const Scene& scene) {
     Scene out;
+    out.origin = scene.origin;
     out.nodes = scene.nodes;
     out.skins = scene.skins;
     out.animations = scene.animations;

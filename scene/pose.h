@@ -52,6 +52,8 @@ struct PoseError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// In its parent's space.
+[[nodiscard]] glm::dmat4 localTransform(const Node& node);
 /// True where the primitive's vertices depend on the pose.
 [[nodiscard]] bool deforms(const Instance& instance, const Primitive& primitive);
 /// True where two times may look different.

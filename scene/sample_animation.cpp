@@ -7,13 +7,14 @@
 namespace gnomon::renderer {
 namespace {
 
-glm::quat quaternion(const float* xyzw) {
-    return {xyzw[3], xyzw[0], xyzw[1], xyzw[2]};
+template <class Number>
+glm::dquat unitQuaternion(const Number* xyzw) {
+    const glm::dquat q(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
+    const double length = glm::length(q);
+    return length > 1.0e-12 ? q / length : glm::dquat(1.0, 0.0, 0.0, 0.0);
 }
 
-void writeUnit(const glm::quat& q, std::span<float> out) {
-    const float length = glm::length(q);
-    const glm::quat unit = length > 1.0e-12f ? q / length : glm::quat(1.0f, 0.0f, 0.0f, 0.0f);
+void write(const glm::dquat& unit, std::span<double> out) {
     out[0] = unit.x;
     out[1] = unit.y;
     out[2] = unit.z;
@@ -37,7 +38,7 @@ Segment segmentAt(const std::vector<float>& times, double seconds) {
 }
 
 // Per key: in-tangent, value, out-tangent.
-void sampleSpline(const AnimationChannel& channel, const Segment& s, std::span<float> out) {
+void sampleSpline(const AnimationChannel& channel, const Segment& s, std::span<double> out) {
     const std::size_t width = out.size();
     const float* here = channel.values.data() + s.key * 3 * width;
     const float* next = s.part > 0.0 ? here + 3 * width : here;
@@ -45,8 +46,8 @@ void sampleSpline(const AnimationChannel& channel, const Segment& s, std::span<f
     for (std::size_t i = 0; i < width; ++i) {
         const double value = here[width + i], outTangent = here[2 * width + i];
         const double nextValue = next[width + i], nextInTangent = next[i];
-        out[i] = static_cast<float>((2.0 * t3 - 3.0 * t2 + 1.0) * value + s.seconds * (t3 - 2.0 * t2 + t) * outTangent +
-                                    (-2.0 * t3 + 3.0 * t2) * nextValue + s.seconds * (t3 - t2) * nextInTangent);
+        out[i] = (2.0 * t3 - 3.0 * t2 + 1.0) * value + s.seconds * (t3 - 2.0 * t2 + t) * outTangent +
+                 (-2.0 * t3 + 3.0 * t2) * nextValue + s.seconds * (t3 - t2) * nextInTangent;
     }
 }
 
@@ -66,23 +67,26 @@ std::size_t channelWidth(const AnimationChannel& channel) {
     return channel.values.size() / channel.times.size() / perKey;
 }
 
-void sampleChannel(const AnimationChannel& channel, double seconds, std::span<float> out) {
+void sampleChannel(const AnimationChannel& channel, double seconds, std::span<double> out) {
     const bool rotation = channel.path == AnimationChannel::Path::Rotation;
     const Segment s = segmentAt(channel.times, seconds);
     if (channel.interpolation == AnimationChannel::Interpolation::CubicSpline) {
         sampleSpline(channel, s, out);
-        if (rotation) writeUnit(quaternion(out.data()), out);
+        if (rotation) write(unitQuaternion(out.data()), out);
         return;
     }
     const bool step = channel.interpolation == AnimationChannel::Interpolation::Step || s.part <= 0.0;
     const float* here = channel.values.data() + s.key * out.size();
     const float* next = step ? here : here + out.size();
-    const auto part = static_cast<float>(step ? 0.0 : s.part);
+    const double part = step ? 0.0 : s.part;
     if (rotation) {  // the shorter way round
-        writeUnit(glm::slerp(quaternion(here), quaternion(next), part), out);
+        write(glm::normalize(glm::slerp(unitQuaternion(here), unitQuaternion(next), part)), out);
         return;
     }
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = here[i] + part * (next[i] - here[i]);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const double from = here[i], to = next[i];
+        out[i] = from + part * (to - from);
+    }
 }
 
 double loopedTime(const Animation& animation, double seconds) {

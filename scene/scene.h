@@ -1,6 +1,8 @@
 #pragma once
 // A scene on the CPU: what the loaders and the built-in scenes make, and what the reference renderer uploads.
 // World space is right-handed, y up, in metres. Every index in a Scene has been checked by whoever made it.
+// Places count from Scene::origin, so that floats are fine wherever a file puts its things. Nodes alone are as the file
+// has them.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -95,14 +97,14 @@ struct Mesh {
 struct Instance {
     std::string name;
     std::uint32_t mesh = 0;
-    glm::mat4 worldFromObject{1.0f};  // at rest; of a skinned instance: identity
+    glm::dmat4 worldFromObject{1.0};  // at rest; of a skinned instance: identity
     std::uint32_t node = kNone;       // moves with this node
     std::uint32_t skin = kNone;       // posed in world space by this skin's joints; the node's place does not count
 };
 
 /// True when the instance turns clockwise triangles into counter-clockwise ones: swap the front face when drawing it.
 [[nodiscard]] inline bool isMirrored(const Instance& instance) {
-    return turnsWinding(glm::dmat3(glm::mat3(instance.worldFromObject)));
+    return turnsWinding(glm::dmat3(instance.worldFromObject));
 }
 
 enum class LightKind : std::uint8_t { Point, Spot, Directional };
@@ -139,6 +141,7 @@ struct SceneCamera {
 
 struct Scene {
     std::string name;
+    glm::dvec3 origin{0.0};  // in the file's coordinates; zero unless everything is far from there
     std::vector<Image> images;
     std::vector<Material> materials;  // at least one
     std::vector<Mesh> meshes;

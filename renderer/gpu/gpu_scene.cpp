@@ -57,7 +57,7 @@ void GpuScene::addItems(const Scene& scene, const GeometryOfPrimitives& geometry
             item.firstTriangleId = static_cast<std::uint32_t>(nextId);
             item.triangleCount = geometries_[item.geometry].triangleCount;
             item.clusterCount = geometries_[item.geometry].clusterCount;
-            item.worldFromObject = glm::dmat4(instance.worldFromObject);
+            item.worldFromObject = instance.worldFromObject;
             nextId += item.triangleCount;
             if (item.triangleCount != 0) items_.push_back(item);
         }

@@ -11,7 +11,9 @@ namespace gnomon::renderer::courtyard {
 namespace {
 
 glm::mat4 localOf(const Node& node) {
-    return glm::scale(glm::translate(glm::mat4(1.0f), node.translation) * glm::mat4_cast(node.rotation), node.scale);
+    return glm::scale(
+        glm::translate(glm::mat4(1.0f), glm::vec3(node.translation)) * glm::mat4_cast(glm::quat(node.rotation)),
+        glm::vec3(node.scale));
 }
 
 AnimationChannel channelOf(std::uint32_t node, AnimationChannel::Path path, int keys) {
@@ -55,7 +57,7 @@ void mendNormals(Primitive& p) {
 
 std::uint32_t addNode(Scene& scene, std::string name, std::uint32_t parent, const glm::vec3& translation,
                       const glm::quat& rotation, float scale) {
-    scene.nodes.push_back({std::move(name), parent, translation, rotation, glm::vec3(scale)});
+    scene.nodes.push_back({std::move(name), parent, translation, glm::dquat(rotation), glm::dvec3(scale)});
     return static_cast<std::uint32_t>(scene.nodes.size() - 1);
 }
 

@@ -66,14 +66,14 @@ void addBulb(Scene& scene, const glm::vec3& centre, float radius) {
             for (const std::uint32_t i : {a, b, a + 1, a + 1, b, b + 1}) p.indices.push_back(i);
         }
     scene.instances.push_back(
-        {"bulb", static_cast<std::uint32_t>(scene.meshes.size()), glm::translate(glm::mat4(1.0f), centre)});
+        {"bulb", static_cast<std::uint32_t>(scene.meshes.size()), glm::translate(glm::dmat4(1.0), glm::dvec3(centre))});
     scene.meshes.push_back({"bulb", {p}});
 }
 
 // All is `scale` times as large, and as bright to look at.
 View3d scaled(View3d view, float scale) {
     for (Instance& instance : view.scene.instances)
-        instance.worldFromObject = glm::scale(glm::mat4(1.0f), glm::vec3(scale)) * instance.worldFromObject;
+        instance.worldFromObject = glm::scale(glm::dmat4(1.0), glm::dvec3(scale)) * instance.worldFromObject;
     for (SceneLight& light : view.scene.lights) {
         light.position *= scale;
         light.rangeMetres *= scale;

@@ -2,8 +2,8 @@
 
 namespace gnomon::renderer::image_test {
 
-Verified verified(const Device& device, const View3d& view, const RendererDesc& desc) {
-    Renderer renderer(device, view.scene, desc, pipelinesOf(device));
+Verified verified(const Device& device, const View3d& view, const RendererDesc& desc, const Scene* drawn) {
+    Renderer renderer(device, drawn != nullptr ? *drawn : view.scene, desc, pipelinesOf(device));
     Verified out;
     out.picture = draw(renderer, view.camera, ShadowMode::Deferred).linear;
     const Pose pose = poseAt(view.scene, 0.0);

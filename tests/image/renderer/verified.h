@@ -13,6 +13,7 @@ struct Verified {
     HdrPicture picture;
 };
 /// One deferred frame, and the figures of all lights. Soft truth is judged where the first filter is PCSS.
-Verified verified(const Device& device, const View3d& view, const RendererDesc& desc);
+/// `drawn`: what the renderer has in place of the scene that the truth traces.
+Verified verified(const Device& device, const View3d& view, const RendererDesc& desc, const Scene* drawn = nullptr);
 
 }  // namespace gnomon::renderer::image_test

@@ -106,6 +106,25 @@ TEST_P(Verify, LostShadowsAndLightsAreTold) {
     EXPECT_GT(figuresOf(v.truth, v.visibility, false).opaque.acne, 5000u);
 }
 
+// Places as a renderer has them that composes in floats, in earth coordinates.
+TEST_P(Verify, PlacesRoundedToFloatsAreTold) {
+    const glm::dvec3 far(4510731.2537, 4510731.8731, 0.333);
+    const View3d view = builtin("boxes");
+    Scene rounded = view.scene;
+    for (Instance& instance : rounded.instances) {
+        const glm::vec3 place(glm::dvec3(instance.worldFromObject[3]) + far);
+        instance.worldFromObject[3] = glm::dvec4(glm::dvec3(place) - far, 1.0);
+    }
+    RendererDesc desc = smallDesc(160, 90);
+    desc.frame.filters = {Filter::Hard};
+    const Figures good = verified(device(), view, desc).figures;
+    const Figures planted = verified(device(), view, desc, &rounded).figures;
+    EXPECT_LE(good.share(good.acne + good.leak), kMostAcneAndLeak);
+    EXPECT_GT(planted.share(planted.acne + planted.leak), 3.0 * kMostAcneAndLeak);
+    std::printf("[ figure   ] %s: acne and leak %.4f %%, with rounded places %.4f %%\n", device().info().name.c_str(),
+                100.0 * good.share(good.acne + good.leak), 100.0 * planted.share(planted.acne + planted.leak));
+}
+
 // In place of the ball of sphere-on-plane a square plate above the plane that shows its back to the camera: through it
 // the plane is seen, which it darkens.
 View3d hiddenPlate(float heightMetres, float halfMetres) {

@@ -72,7 +72,8 @@ TEST_F(BiasLab, IsOfModerateSizeAndLit) {
 TEST_F(BiasLab, StandsFarFromTheOrigin) {
     EXPECT_GE(glm::length(lab::kOrigin), 4000.0f);
     for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(std::fmod(lab::kOrigin[axis], 1024.0f), 0.0f);
-    for (const Instance& instance : scene.instances) EXPECT_EQ(instance.worldFromObject, placed(lab::kOrigin));
+    for (const Instance& instance : scene.instances)
+        EXPECT_EQ(instance.worldFromObject, glm::dmat4(placed(lab::kOrigin)));
     for (const SceneCamera& camera : scene.cameras)
         EXPECT_LT(glm::distance(glm::vec3(camera.worldFromCamera[3]), lab::kOrigin), 20.0f) << camera.name;
 }

@@ -2,6 +2,7 @@
 
 #include "scene/builtin/builtin.h"
 #include "scene/builtin/courtyard_figure.h"
+#include "scene/pose.h"
 
 #include <gtest/gtest.h>
 #include <cmath>
@@ -23,7 +24,7 @@ std::size_t widthOf(const AnimationChannel& channel) {
 
 // Local transforms at a key of the channels that have one there.
 glm::mat4 worldAt(const Scene& scene, std::uint32_t node, float seconds) {
-    glm::mat4 world(1.0f);
+    glm::dmat4 world(1.0);
     for (; node != kNone; node = scene.nodes[node].parent) {
         Node local = scene.nodes[node];
         for (const AnimationChannel& c : scene.animations.front().channels) {
@@ -36,13 +37,12 @@ glm::mat4 worldAt(const Scene& scene, std::uint32_t node, float seconds) {
             if (c.path == Path::Translation)
                 local.translation = glm::mix(glm::vec3(a[0], a[1], a[2]), glm::vec3(b[0], b[1], b[2]), t);
             else
-                local.rotation = glm::slerp(glm::quat(a[3], a[0], a[1], a[2]), glm::quat(b[3], b[0], b[1], b[2]), t);
+                local.rotation =
+                    glm::dquat(glm::slerp(glm::quat(a[3], a[0], a[1], a[2]), glm::quat(b[3], b[0], b[1], b[2]), t));
         }
-        world = glm::scale(glm::translate(glm::mat4(1.0f), local.translation) * glm::mat4_cast(local.rotation),
-                           local.scale) *
-                world;
+        world = localTransform(local) * world;
     }
-    return world;
+    return glm::mat4(world);
 }
 
 std::uint32_t nodeNamed(const Scene& scene, const std::string& name) {
@@ -57,18 +57,18 @@ TEST(CourtyardMotion, NodesHaveParentsBeforeThemAndEverythingThatHangsIsThere) {
     ASSERT_FALSE(scene.nodes.empty());
     for (std::uint32_t i = 0; i < scene.nodes.size(); ++i) {
         ASSERT_TRUE(scene.nodes[i].parent == kNone || scene.nodes[i].parent < i);
-        EXPECT_NEAR(glm::length(scene.nodes[i].rotation), 1.0f, 1e-4f) << scene.nodes[i].name;
+        EXPECT_NEAR(glm::length(scene.nodes[i].rotation), 1.0, 1e-4) << scene.nodes[i].name;
     }
     for (const Instance& instance : scene.instances) {
         ASSERT_TRUE(instance.node == kNone || instance.node < scene.nodes.size());
         ASSERT_TRUE(instance.skin == kNone || instance.skin < scene.skins.size());
         if (instance.skin != kNone) {
-            EXPECT_EQ(instance.worldFromObject, glm::mat4(1.0f));
+            EXPECT_EQ(instance.worldFromObject, glm::dmat4(1.0));
         }
         if (instance.node == kNone) continue;
         const glm::mat4 rest = worldAt(scene, instance.node, 0.0f);
         for (int k = 0; k < 4; ++k)
-            EXPECT_LT(glm::length(rest[k] - instance.worldFromObject[k]), 1e-3f) << instance.name;
+            EXPECT_LT(glm::length(rest[k] - glm::vec4(instance.worldFromObject[k])), 1e-3f) << instance.name;
     }
     std::size_t carried = 0;
     for (const SceneLight& light : scene.lights) {

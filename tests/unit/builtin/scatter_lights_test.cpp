@@ -16,7 +16,7 @@ Scene scattered(const char* name, std::uint32_t count, std::uint64_t seed, float
     Scene scene = makeBuiltinScene(name).value();
     scene.lights.clear();
     for (Instance& instance : scene.instances) {
-        instance.worldFromObject = glm::scale(glm::mat4(1.0f), glm::vec3(scale)) * instance.worldFromObject;
+        instance.worldFromObject = glm::scale(glm::dmat4(1.0), glm::dvec3(scale)) * instance.worldFromObject;
         instance.node = instance.skin = kNone;  // stands still where it is, so that it can be scaled
     }
     scatterLights(scene, count, seed);

@@ -22,9 +22,9 @@ AnimationChannel channel(std::uint32_t node, Path path, std::vector<float> times
 }
 
 std::vector<float> sample(const AnimationChannel& c, double seconds) {
-    std::vector<float> out(channelWidth(c));
+    std::vector<double> out(channelWidth(c));
     sampleChannel(c, seconds, out);
-    return out;
+    return {out.begin(), out.end()};
 }
 
 void expectNear(const glm::dvec3& got, const glm::dvec3& expected, double tolerance = 1e-5) {
@@ -138,7 +138,7 @@ TEST(Pose, ChildrenFollowTheirParents) {
     Scene scene = withNodes(3);
     scene.nodes[0].translation = {10, 0, 0};
     scene.nodes[1].parent = 0;
-    scene.nodes[1].matrix = glm::scale(glm::mat4(1.0f), {1, 2, 1});
+    scene.nodes[1].matrix = glm::scale(glm::dmat4(1.0), {1, 2, 1});
     scene.nodes[2].parent = 1;
     scene.nodes[2].translation = {1, 1, 0};
     play(scene, {channel(0, Path::Rotation, {0, 1}, {0, 0, 0, 1, 0, 0, kHalfRoot, kHalfRoot})});
@@ -274,8 +274,8 @@ TEST(Pose, StillScenesShowThePose) {
     EXPECT_EQ(triangleCount(still), 2u);
     const auto corner = [&](std::size_t i) {
         const Instance& instance = still.instances[i];
-        return glm::vec3(instance.worldFromObject *
-                         glm::vec4(still.meshes[instance.mesh].primitives[0].positions[0], 1.0f));
+        return glm::dvec3(instance.worldFromObject *
+                          glm::dvec4(glm::dvec3(still.meshes[instance.mesh].primitives[0].positions[0]), 1.0));
     };
     expectNear(corner(0), {2, 0, 1});
     expectNear(corner(1), {0, 0, 0});

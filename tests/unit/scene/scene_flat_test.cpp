@@ -26,12 +26,12 @@ Scene growing(const glm::vec3& rest) {
     Scene scene;
     scene.materials.resize(1);
     scene.nodes.resize(2);
-    scene.nodes[0].rotation = glm::angleAxis(0.7f, glm::normalize(glm::vec3(1, 2, 3)));
+    scene.nodes[0].rotation = glm::angleAxis(0.7, glm::normalize(glm::dvec3(1, 2, 3)));
     scene.nodes[0].translation = {3, 2, 1};
     scene.nodes[1].parent = 0;
     scene.nodes[1].scale = rest;
-    const glm::mat4 world = glm::translate(glm::mat4(1.0f), scene.nodes[0].translation) *
-                            glm::mat4_cast(scene.nodes[0].rotation) * glm::scale(glm::mat4(1.0f), rest);
+    const glm::dmat4 world = glm::translate(glm::dmat4(1.0), scene.nodes[0].translation) *
+                             glm::mat4_cast(scene.nodes[0].rotation) * glm::scale(glm::dmat4(1.0), glm::dvec3(rest));
     Primitive p;
     p.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
     p.indices = {0, 1, 2};
@@ -41,7 +41,7 @@ Scene growing(const glm::vec3& rest) {
     SceneLight light;
     light.kind = LightKind::Spot;
     light.position = glm::vec3(world[3]);
-    light.direction = glm::mat3_cast(scene.nodes[0].rotation) * glm::vec3(0, 0, -1);
+    light.direction = glm::vec3(glm::mat3_cast(scene.nodes[0].rotation) * glm::dvec3(0, 0, -1));
     light.node = 1;
     scene.lights.push_back(light);
     Animation animation;

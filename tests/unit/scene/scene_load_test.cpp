@@ -190,7 +190,7 @@ TEST(SceneLoad, SkinAtItsStoredPose) {
     const Pose rest = restPose(scene);
     EXPECT_EQ(rest.deformed.at(0).positions,
               (std::vector<glm::vec3>{{0, 0, 1}, {1, 0, 3}, {0, 1, 2}}));  // the node's own transform does not count
-    EXPECT_EQ(scene.instances.at(0).worldFromObject, glm::mat4(1.0f));
+    EXPECT_EQ(scene.instances.at(0).worldFromObject, glm::dmat4(1.0));
 }
 
 TEST(SceneLoad, CamerasPerspectiveAndOrthographic) {

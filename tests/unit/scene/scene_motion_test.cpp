@@ -61,6 +61,7 @@ struct Parts {
     std::string faceMore;
     std::string moreAnimations;
     std::vector<float> times = {0, 1, 2};
+    std::vector<float> moves = {0, 0, 0, 4, 0, 0, 0, 0, 0};
     std::vector<float> turns = {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 0, 1};
     std::vector<std::uint8_t> joints = {0, 9, 9, 9, 1, 0, 0, 0, 1, 0, 0, 0};
 
@@ -71,7 +72,7 @@ struct Parts {
         file.add("VEC4", {1, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 0}, 4);
         file.add("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
         file.add("SCALAR", times, 1);
-        file.add("VEC3", {0, 0, 0, 4, 0, 0, 0, 0, 0}, 3);
+        file.add("VEC3", moves, 3);
         file.add("VEC4", turns, 4);
         file.addBytes("SCALAR", {0, 0, 255, 0, 0, 255}, 1);
         file.add("VEC3", std::vector<float>(27, 1.0f), 3);
@@ -178,6 +179,43 @@ TEST(SceneMotion, LightsAndCamerasHangOnNodes) {
     EXPECT_NE(scene.cameras[1].node, kNone);
     ASSERT_EQ(scene.lights.size(), 1u);
     EXPECT_EQ(poseAt(scene, 1.0).lights[0].position, glm::vec3(4, 0, 0));
+}
+
+// A figure in earth coordinates is posed as at zero.
+TEST(SceneMotion, AFigureFarFromZero) {
+    Parts parts;
+    const Scene near = loaded(parts);
+    EXPECT_EQ(near.origin, glm::dvec3(0.0));
+    parts.nodes =
+        replaced(parts.nodes, R"({"children")", R"({"translation":[4510731.2537,-4510731.8731,0.333],"children")");
+    const Scene far = loaded(parts);
+    EXPECT_EQ(far.origin, glm::dvec3(4510731.2537, -4510731.8731, 0.333));
+    for (const double seconds : {0.0, 0.3, 0.7, 1.5}) {
+        const Pose expected = poseAt(near, seconds), pose = poseAt(far, seconds);
+        ASSERT_EQ(pose.deformed.size(), expected.deformed.size());
+        for (std::size_t d = 0; d < pose.deformed.size(); ++d)
+            for (std::size_t v = 0; v < 3; ++v) {
+                const auto place = [&](const Pose& p) {
+                    return glm::dvec3(p.worldFromObject[p.deformed[d].instance] *
+                                      glm::dvec4(glm::dvec3(p.deformed[d].positions[v]), 1.0));
+                };
+                EXPECT_LT(glm::length(place(pose) - place(expected)), 1e-6) << seconds << " s, " << d << " " << v;
+            }
+    }
+}
+
+// The keys of a root that moves in earth coordinates are floats. Between them it moves smoothly.
+TEST(SceneMotion, ARootThatMovesFarFromZero) {
+    Parts parts;
+    parts.nodes = R"([{"children":[1]},{"mesh":1,"translation":[0,0,0.25]},{},{}])";
+    parts.channels = R"({"sampler":0,"target":{"node":0,"path":"translation"}})";
+    parts.moves = {4510732, 0, 0, 4510736, 0, 0, 4510732, 0, 0};
+    const Scene scene = loaded(parts);
+    EXPECT_GT(scene.origin.x, 4.5e6);
+    for (const double seconds : {0.0, 0.1, 0.37, 0.99}) {
+        const glm::dvec3 place = glm::dvec3(poseAt(scene, seconds).worldFromObject[0][3]) + scene.origin;
+        EXPECT_LT(glm::length(place - glm::dvec3(4510732.0 + 4.0 * seconds, 0.0, 0.25)), 1e-6) << seconds << " s";
+    }
 }
 
 TEST(SceneMotion, Interpolations) {

@@ -209,7 +209,7 @@ Scene growing(float rest, bool lampToo) {
     scene.nodes[0].scale = glm::vec3(rest);
     scene.instances[0].node = 0;
     scene.instances[0].worldFromObject = glm::mat4(rest);
-    scene.instances[0].worldFromObject[3][3] = 1.0f;
+    scene.instances[0].worldFromObject[3][3] = 1.0;
     if (lampToo) {
         scene.lights[0].node = 0;
         scene.lights[0].position = rest * glm::vec3(0, 30, 0);

@@ -55,7 +55,7 @@ TEST(TracedScene, SlitLetsLightThrough) {
 TEST(TracedScene, CoplanarNeighboursCastNoShadow) {
     SceneBuilder b;
     b.quad({-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, 40);
-    glm::mat4& world = b.scene.instances[0].worldFromObject;
+    glm::dmat4& world = b.scene.instances[0].worldFromObject;
     world = glm::rotate(glm::translate(glm::mat4(1.0f), {100.3f, -51.7f, 83.1f}), 0.7f, glm::vec3(0.3f, 0.8f, -0.5f));
     const TracedScene traced(b.scene, restPose(b.scene), {99.0, -50.0, 80.0});
     const glm::dvec3 up = glm::normalize(glm::dvec3(world[1])), side = glm::normalize(glm::dvec3(world[0]));

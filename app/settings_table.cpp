@@ -78,7 +78,8 @@ std::vector<Setting> makeTable() {
          .key = "camera",
          .member = &S::camera,
          .help = "Where the picture is taken from",
-         .range = "default, a camera's name, #index, or eye:target[:degrees] in the file's coordinates, as in 0,3,8:0,1,0:60"});
+         .range = "default, a camera's name, #index, or eye:target[:degrees or :height=UNITS][:roll=DEGREES] in the "
+                  "file's coordinates, as in 0,3,8:0,1,0:60; height makes it orthographic"});
     add({.group = kScene,
          .name = "time",
          .key = "time",

@@ -178,8 +178,13 @@ void lightIfDark(Scene& scene);
 /// The scene's first camera; without one, a camera that frames the bounds from the front right and above.
 SceneCamera defaultCamera(const Scene& scene);
 
-/// Reads "x,y,z:x,y,z" or "x,y,z:x,y,z:degrees" (eye, target, vertical field of view), "#index" or the name of one of
-/// the scene's cameras, or "default". Changes `camera` on success only.
+/// World from camera, for one that looks from `eye` at `target` with y up, or looks along y with -z up.
+[[nodiscard]] glm::mat4 lookingAt(const glm::vec3& eye, const glm::vec3& target);
+
+/// Reads "eye:target", each "x,y,z" in the file's coordinates, and after it, each behind a colon and each once:
+/// "degrees" (vertical field of view, 60 without it) or "height=units" (orthographic, so high), and "roll=degrees"
+/// (clockwise, as one behind the camera sees it turn). Or "#index" or the name of one of the scene's cameras, or
+/// "default". Changes `camera` on success only.
 Result parseCamera(std::string_view text, const Scene& scene, SceneCamera& camera);
 
 }  // namespace gnomon::renderer

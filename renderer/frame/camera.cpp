@@ -32,10 +32,13 @@ glm::dmat4 perspective(const SceneCamera& camera, double aspect, bool reversed) 
     return m;
 }
 
+// In half heights, where the camera states no far plane: depth needs an end here.
+constexpr double kDeepest = 1e4;
+
 glm::dmat4 orthographic(const SceneCamera& camera, double aspect, bool reversed) {
     const double n = camera.nearMetres;
-    const double f = std::isfinite(camera.farMetres) ? static_cast<double>(camera.farMetres) : n + 1e4;
-    const double scale = 1.0 / static_cast<double>(camera.orthographicHalfHeight);
+    const double half = static_cast<double>(camera.orthographicHalfHeight), scale = 1.0 / half;
+    const double f = std::isfinite(camera.farMetres) ? static_cast<double>(camera.farMetres) : n + kDeepest * half;
     glm::dmat4 m(0.0);
     m[0][0] = scale / aspect;
     m[1][1] = -scale;

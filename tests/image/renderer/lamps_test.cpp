@@ -1,17 +1,12 @@
-// Lamps as files have them: without a range, without a size, in housings, and in scenes of any size. On scenes that are
-// made here, and on the files that showed the faults, where GNOMON_SCENES_DIR has them.
+// Lamps as files have them: without a range, without a size, in housings, and in scenes of any size.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <numbers>
-#include <optional>
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "image/renderer/verified.h"
-#include "scene/load_gltf.h"
 
 namespace gnomon::renderer::image_test {
 namespace {
@@ -19,34 +14,6 @@ namespace {
 GNOMON_IMAGE_TEST_SUITE(Lamps);
 
 constexpr double kMostWrong = 0.001, kMostContactsLost = 0.05;
-
-RendererDesc hardDesc(std::uint32_t widthPx = 160, std::uint32_t heightPx = 90) {
-    RendererDesc desc = smallDesc(widthPx, heightPx);
-    desc.frame.filters = {Filter::Hard};
-    return desc;
-}
-
-// Empty where GNOMON_SCENES_DIR names no folder with it.
-std::optional<View3d> field(const std::string& file) {
-    const char* folder = std::getenv("GNOMON_SCENES_DIR");
-    if (folder == nullptr) return std::nullopt;
-    View3d view;
-    view.name = std::filesystem::path(file).stem().string();
-    if (!loadGltf(std::filesystem::path(folder) / "field" / file, view.scene).ok()) return std::nullopt;
-    completeLights(view.scene);
-    view.camera = defaultCamera(view.scene);
-    return view;
-}
-
-Figures figuresIn(const Device& device, const View3d& view, const RendererDesc& desc) {
-    const Figures f = verified(device, view, desc).figures;
-    std::printf(
-        "[ figure   ] %s: %s: of %llu pairs %llu dark, acne %.4f %%, leak %.4f %%, contact leak %.2f %%, error %.5f\n",
-        device.info().name.c_str(), view.name.c_str(), static_cast<unsigned long long>(f.pairs),
-        static_cast<unsigned long long>(f.dark), 100.0 * f.share(f.acne), 100.0 * f.share(f.leak),
-        100.0 * f.contactLeakOfContacts(), f.visibilityError());
-    return f;
-}
 
 // A ball of triangles around `centre`, seen from outside: its faces look away from what is in it.
 void addBulb(Scene& scene, const glm::vec3& centre, float radius) {
@@ -164,69 +131,6 @@ TEST_P(Lamps, WithoutARangeFollowTheInverseSquare) {
             EXPECT_NEAR(guessed.rgba[i + c], whole.rgba[i + c], 2e-3f * whole.rgba[i + c]) << i << " " << c;
         }
     EXPECT_GT(seen, 5000u);
-}
-
-TEST_P(Lamps, OfTheFieldWithoutARange) {
-    const std::optional<View3d> view = field("19-range-that-nobody-gave/norange.glb");
-    if (!view) GTEST_SKIP() << "GNOMON_SCENES_DIR has no field scenes";
-    View3d stated = *view;
-    for (SceneLight& light : stated.scene.lights) {
-        EXPECT_TRUE(light.rangeIsGuessed);
-        light.rangeMetres = 1e4f;
-        light.rangeIsGuessed = false;
-    }
-    const auto green = [&](const View3d& v) {
-        double sum = 0.0;
-        const HdrPicture picture = drawOnce(device(), v, hardDesc(), ShadowMode::Off).linear;
-        for (std::size_t i = 1; i < picture.rgba.size(); i += 4) sum += static_cast<double>(picture.rgba[i]);
-        return sum;
-    };
-    const double whole = green(stated), here = green(*view);
-    std::printf("[ figure   ] %s: norange: %.3f %% of the green light is lost\n", device().info().name.c_str(),
-                100.0 * (1.0 - here / whole));
-    EXPECT_NEAR(here, whole, 1e-3 * whole);
-}
-
-TEST_P(Lamps, OfTheFieldInTheirHousings) {
-    for (const char* file : {"bulb20.gltf", "bulb60.gltf", "bulb.glb"}) {
-        const std::optional<View3d> view = field(std::string("16-lamp-housing-near-plane/") + file);
-        if (!view) GTEST_SKIP() << "GNOMON_SCENES_DIR has no field scenes";
-        for (const Filter filter : {Filter::Hard, Filter::Pcss}) {
-            if (filter == Filter::Pcss && !thorough()) break;
-            RendererDesc desc = hardDesc();
-            desc.frame.filters = {filter};
-            const Figures f = figuresIn(device(), *view, desc);
-            EXPECT_GT(f.pairs, 1500u);
-            EXPECT_EQ(f.lit, 0u);
-            EXPECT_EQ(f.leak + f.contactLeak + f.edgeError, 0u);
-            EXPECT_LE(f.visibilityError(), 0.0);
-        }
-    }
-}
-
-TEST_P(Lamps, OfTheFieldInASceneOfFourMillimetres) {
-    const std::optional<View3d> view = field("18-metres-in-small-scenes/tiny0.001.gltf");
-    if (!view) GTEST_SKIP() << "GNOMON_SCENES_DIR has no field scenes";
-    const Figures f = figuresIn(device(), *view, hardDesc(480, 270));
-    EXPECT_GT(f.contacts, 500u);
-    EXPECT_LE(f.share(f.acne + f.leak), kMostWrong);
-    EXPECT_LE(f.contactLeakOfContacts(), kMostContactsLost);
-}
-
-TEST_P(Lamps, OfTheFieldUnderASkyDome) {
-    const std::optional<View3d> open = field("03-lamp-size-guessed-from-the-sky/domeQNone.gltf"),
-                                under = field("03-lamp-size-guessed-from-the-sky/domeQ500.gltf");
-    if (!open || !under) GTEST_SKIP() << "GNOMON_SCENES_DIR has no field scenes";
-    EXPECT_FLOAT_EQ(open->scene.lights[0].sourceRadius, under->scene.lights[0].sourceRadius);
-    RendererDesc desc = smallDesc(160, 90);
-    const HdrPicture expected = drawOnce(device(), *open, desc, ShadowMode::Deferred).linear;
-    HdrPicture actual = drawOnce(device(), *under, desc, ShadowMode::Deferred).linear;
-    // The dome stands where the other file has no geometry.
-    for (std::size_t i = 0; i < expected.rgba.size(); i += 4)
-        if (expected.rgba[i + 3] == 0.0f)
-            std::copy_n(expected.rgba.begin() + static_cast<std::ptrdiff_t>(i), 4,
-                        actual.rgba.begin() + static_cast<std::ptrdiff_t>(i));
-    expectEqual(device(), "sky dome", expected, actual, 1);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "image/renderer/verified.h"
 
+#include <cstdio>
+
 namespace gnomon::renderer::image_test {
 
 Verified verified(const Device& device, const View3d& view, const RendererDesc& desc, const Scene* drawn) {
@@ -29,6 +31,22 @@ Verified verified(const Device& device, const View3d& view, const RendererDesc& 
         out.subsurface += figures.subsurface;
     }
     return out;
+}
+
+RendererDesc hardDesc(std::uint32_t widthPx, std::uint32_t heightPx) {
+    RendererDesc desc = smallDesc(widthPx, heightPx);
+    desc.frame.filters = {Filter::Hard};
+    return desc;
+}
+
+Figures figuresIn(const Device& device, const View3d& view, const RendererDesc& desc) {
+    const Figures f = verified(device, view, desc).figures;
+    std::printf(
+        "[ figure   ] %s: %s: of %llu pairs %llu dark, acne %.4f %%, leak %.4f %%, contact leak %.2f %%, error %.5f\n",
+        device.info().name.c_str(), view.name.c_str(), static_cast<unsigned long long>(f.pairs),
+        static_cast<unsigned long long>(f.dark), 100.0 * f.share(f.acne), 100.0 * f.share(f.leak),
+        100.0 * f.contactLeakOfContacts(), f.visibilityError());
+    return f;
 }
 
 }  // namespace gnomon::renderer::image_test

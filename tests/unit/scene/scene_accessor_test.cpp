@@ -148,13 +148,3 @@ TEST(SceneAccessor, ManyZerosAreRefused) {
     refused(18446744073709551615u, 1);
     refused(4000000u, 20);
 }
-
-TEST(SceneAccessor, FieldScene) {
-    const char* folder = std::getenv("GNOMON_SCENES_DIR");
-    if (folder == nullptr) GTEST_SKIP() << "GNOMON_SCENES_DIR is not set";
-    Scene scene;
-    const gnomon::Result result =
-        loadGltf(std::filesystem::path(folder) / "field/04-accessor-without-bufferview/zerom.gltf", scene);
-    ASSERT_TRUE(result.ok()) << result.message();
-    ASSERT_EQ(scene.instances.size(), 2u);
-}

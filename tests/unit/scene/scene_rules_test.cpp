@@ -170,6 +170,7 @@ TEST(SceneRules, CamerasFromText) {
     EXPECT_NEAR(glm::determinant(glm::mat3(camera.worldFromCamera)), 1.0f, 1.0e-5f);
     EXPECT_TRUE(parseCamera("0,9,0:0,0,0", scene, camera).ok());  // straight down
     EXPECT_NEAR(glm::determinant(glm::mat3(camera.worldFromCamera)), 1.0f, 1.0e-5f);
+    EXPECT_FALSE(camera.orthographic);
     EXPECT_TRUE(parseCamera("default", scene, camera).ok());
     scene.cameras.push_back({});
     scene.cameras[0].name = "door";
@@ -179,11 +180,39 @@ TEST(SceneRules, CamerasFromText) {
     EXPECT_TRUE(parseCamera("#0", scene, camera).ok());
     for (const char* bad :
          {"", "#1", "#", "#x", "window", "1,2,3", "1,2:3,4,5", "1,2,3:1,2,3", "1,2,3:4,5,6:0", "1,2,3:4,5,6:180",
-          "1,2,3:4,5,6:60:1", "1,2,nan:4,5,6", "1,2,3,4:5,6,7", "1,2,3x:4,5,6", "1,,3:4,5,6"}) {
+          "1,2,3:4,5,6:60:1", "1,2,3:4,5,6:60:height=2", "1,2,3:4,5,6:height=0", "1,2,3:4,5,6:height=", "1,2,3:4,5,6:width=2",
+          "1,2,3:4,5,6:roll=1:roll=2", "1,2,3:4,5,6:roll=361", "1,2,3:4,5,6:roll=nan", "1,2,3:roll=1", "1,2,3:4,5,6:", "1,2,nan:4,5,6", "1,2,3,4:5,6,7", "1,2,3x:4,5,6", "1,,3:4,5,6"}) {
         SceneCamera untouched;
         untouched.nearMetres = 123.0f;
         EXPECT_FALSE(parseCamera(bad, scene, untouched).ok()) << bad;
         EXPECT_EQ(untouched.nearMetres, 123.0f);
+    }
+}
+
+TEST(SceneRules, OrthographicCamerasFromText) {
+    const Scene scene = room(10.0f, {});
+    SceneCamera camera;
+    ASSERT_TRUE(parseCamera("0,14,0:0,0,0:height=6:roll=90", scene, camera).ok());
+    EXPECT_TRUE(camera.orthographic);
+    EXPECT_EQ(camera.orthographicHalfHeight, 3.0f);
+    EXPECT_GT(camera.farMetres, 14.0f + 5.0f);
+    EXPECT_LT(camera.farMetres, 100.0f);
+    // Straight down, -z is up in the picture. Clockwise by a quarter, up in the picture is +x.
+    EXPECT_NEAR(glm::length(glm::vec3(camera.worldFromCamera[1]) - glm::vec3(1, 0, 0)), 0.0f, 1e-6f);
+    EXPECT_NEAR(glm::length(glm::vec3(camera.worldFromCamera[2]) - glm::vec3(0, 1, 0)), 0.0f, 1e-6f);
+    ASSERT_TRUE(parseCamera("0,0,8:0,0,0:roll=-90:35", scene, camera).ok());
+    EXPECT_FALSE(camera.orthographic);
+    EXPECT_NEAR(camera.verticalFieldOfView, glm::radians(35.0f), 1.0e-6f);
+    EXPECT_NEAR(glm::length(glm::vec3(camera.worldFromCamera[1]) - glm::vec3(-1, 0, 0)), 0.0f, 1e-6f);
+}
+
+// Whatever is in front of the eye by a thousandth of the way to the target is seen, in a scene of any size.
+TEST(SceneRules, NearPlanesFollowTheTarget) {
+    for (const float size : {0.004f, 10.0f, 1.0e5f}) {
+        SceneCamera camera;
+        ASSERT_TRUE(parseCamera("0,0,0.002:0,0,0", room(size, {}), camera).ok());
+        EXPECT_LE(camera.nearMetres, 2.001e-6f) << size;
+        EXPECT_GT(camera.nearMetres, 0.0f) << size;
     }
 }
 

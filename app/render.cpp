@@ -17,6 +17,7 @@
 #include "app/outputs.h"
 #include "app/progress.h"
 #include "app/session.h"
+#include "picture/exr.h"
 #include "renderer/frame/lights.h"
 
 namespace gnomon::app {

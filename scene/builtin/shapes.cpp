@@ -213,12 +213,6 @@ glm::mat4 placed(const glm::vec3& position, float turnRadians, float scale) {
     return glm::scale(glm::rotate(moved, turnRadians, glm::vec3(0, 1, 0)), glm::vec3(scale));
 }
 
-glm::mat4 lookingAt(const glm::vec3& eye, const glm::vec3& target) {
-    const glm::vec3 back = glm::normalize(eye - target);
-    const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0, 1, 0), back));
-    return {glm::vec4(right, 0), glm::vec4(glm::cross(back, right), 0), glm::vec4(back, 0), glm::vec4(eye, 1)};
-}
-
 std::uint32_t SceneBuilder::image(Image image) {
     scene.images.push_back(std::move(image));
     return static_cast<std::uint32_t>(scene.images.size() - 1);

@@ -93,9 +93,6 @@ private:
 // worldFromObject for things that stand upright: turned about y, then moved.
 glm::mat4 placed(const glm::vec3& position, float turnRadians = 0.0f, float scale = 1.0f);
 
-// A camera at `eye` that looks at `target`, y up.
-glm::mat4 lookingAt(const glm::vec3& eye, const glm::vec3& target);
-
 // Collects a scene; keeps the indices right.
 class SceneBuilder {
 public:

@@ -1,20 +1,25 @@
 #include "scene/bulk.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
-#include "scene/medians.h"
 #include "scene/triangle_distance.h"
 
 namespace gnomon::renderer {
 namespace {
 
-constexpr double kGap = 4.0;    // reaches of empty space that part the bulk from what is far
-constexpr double kLong = 64.0;  // reaches; the plane below a ball, 40 times as long as the ball's radius, is no horizon
-constexpr double kSmaller = 0.25;
-constexpr std::size_t kMostSamples = 1u << 16;
-constexpr std::size_t kMostShells = 16;  // the largest things are looked at
+constexpr double kGap = 4.0;             // reaches of empty space that part the bulk from what is far
+constexpr double kLong = 64.0;           // reaches; a floor 40 times as long as the ball on it is high is no horizon
+constexpr double kSmallerThanSky = 0.6;  // one just around a square is 1.7 times as large
+constexpr double kSmallerThanPlate = 0.25;
+constexpr double kFlat = 0.125;
+constexpr double kHollow = 0.25;         // nearest to farthest point of what is around all else, with a gap
+constexpr double kRound = 0.7;           // without a gap: a cube has 0.58
+constexpr double kMostOfMedian = 256.0;  // areas; 16 times as long
+constexpr std::size_t kMostSamples = 1u << 12;
+constexpr std::size_t kMostLookedAt = 16;  // things, the largest
 
 struct Middle {
     glm::dvec3 at{0.0};
@@ -53,38 +58,71 @@ bool joins(const Bounds& box, const Middle& m) {
     return diagonal(box) <= kLong * m.reach && nearest(box, m.at) <= kGap * m.reach;
 }
 
-Ball ballAround(const WorldTriangle& t) {
+struct Sample {
+    glm::dvec3 centre{0.0};
+    double radius = 0.0, weight = 0.0;
+};
+
+Sample sampleOf(const Thing& thing, std::size_t triangle) {
+    if (thing.positions == nullptr)
+        return {0.5 * (glm::dvec3(thing.box.min) + glm::dvec3(thing.box.max)), 0.5 * diagonal(thing.box), 0.0};
+    const WorldTriangle t = triangleOf(thing, triangle);
     const glm::dvec3 centre = (t[0] + t[1] + t[2]) / 3.0;
-    return {centre, farthest(t, centre)};
+    return {centre, farthest(t, centre), 0.5 * glm::length(glm::cross(t[1] - t[0], t[2] - t[0]))};
 }
 
-Ball ballAround(const Bounds& box) {
-    return {0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max)), 0.5 * diagonal(box)};
+// Of values with weights: with as much below it as above.
+double weightedMedian(std::vector<std::pair<double, double>> values) {
+    std::ranges::sort(values);
+    double half = 0.0;
+    for (const auto& [value, weight] : values) half += 0.5 * weight;
+    for (const auto& [value, weight] : values)
+        if ((half -= weight) < 0.0) return value;
+    return values.back().first;
 }
 
-// Evenly over the triangles. What is a point shows nothing, and counts only where there is nothing else.
-std::vector<Ball> samplesOf(const std::vector<const Thing*>& things) {
+// What has no area counts only where there is nothing else.
+void weigh(std::vector<Sample>& samples) {
+    std::vector<double> areas;
+    for (const Sample& s : samples)
+        if (s.weight > 0.0) areas.push_back(s.weight);
+    if (areas.empty()) {
+        for (Sample& s : samples) s.weight = 1.0;
+        return;
+    }
+    const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+    std::ranges::nth_element(areas, middle);
+    for (Sample& s : samples) s.weight = std::min(s.weight, kMostOfMedian * *middle);
+}
+
+// Evenly over the triangles.
+std::vector<Sample> samplesOf(const std::vector<const Thing*>& things) {
     std::size_t triangles = 0;
     for (const Thing* thing : things) triangles += thing->triangles;
     const std::size_t stride = triangles / kMostSamples + 1;
-    std::vector<Ball> balls, points;
+    std::vector<Sample> samples;
     std::size_t next = 0;  // counted from the first triangle of the thing
     for (const Thing* thing : things) {
-        for (; next < thing->triangles; next += stride) {
-            const Ball ball =
-                thing->positions != nullptr ? ballAround(triangleOf(*thing, next)) : ballAround(thing->box);
-            (ball.radius > 0.0 ? balls : points).push_back(ball);
-        }
+        for (; next < thing->triangles; next += stride) samples.push_back(sampleOf(*thing, next));
         next -= thing->triangles;
     }
-    return balls.empty() ? points : balls;
+    weigh(samples);
+    return samples;
 }
 
 Middle medianOf(const std::vector<const Thing*>& things) {
-    const std::vector<Ball> balls = samplesOf(things);
-    if (balls.empty()) return {};
-    const glm::dvec3 at = medianCentre(balls);
-    return {at, medianReach(balls, at)};
+    const std::vector<Sample> samples = samplesOf(things);
+    Middle m;
+    if (samples.empty()) return m;
+    const auto median = [&](auto&& valueOf) {
+        std::vector<std::pair<double, double>> values;
+        values.reserve(samples.size());
+        for (const Sample& s : samples) values.emplace_back(valueOf(s), s.weight);
+        return weightedMedian(std::move(values));
+    };
+    for (int axis = 0; axis < 3; ++axis) m.at[axis] = median([&](const Sample& s) { return s.centre[axis]; });
+    m.reach = median([&](const Sample& s) { return glm::length(s.centre - m.at) + s.radius; });
+    return m;
 }
 
 // How far the middle reaches with what joins of the thing.
@@ -101,37 +139,61 @@ double reachWith(const Thing& thing, const Middle& m) {
     return reach;
 }
 
-void grow(const std::vector<const Thing*>& things, Middle& m) {
+Middle grown(const std::vector<const Thing*>& things, Middle m) {
     for (double before = -1.0; m.reach > before;) {
         before = m.reach;
         double reach = m.reach;
         for (const Thing* thing : things) reach = std::max(reach, reachWith(*thing, m));
         m.reach = reach;
     }
+    return m;
 }
 
-bool isShellAround(const Thing& thing, const Middle& m) {
+bool isSky(const Thing& thing, const Middle& m) {
     if (nearest(thing.box, m.at) > m.reach || thing.positions == nullptr) return false;
-    for (std::size_t i = 0; i < thing.triangles; ++i)
-        if (!(nearest(triangleOf(thing, i), m.at) > kGap * m.reach)) return false;
-    return true;
+    double least = farthest(thing.box, m.at), most = 0.0;
+    for (std::size_t i = 0; i < thing.triangles; ++i) {
+        const WorldTriangle t = triangleOf(thing, i);
+        least = std::min(least, nearest(t, m.at));
+        most = std::max(most, farthest(t, m.at));
+        if (!(least > m.reach)) return false;
+    }
+    return least >= (least > kGap * m.reach ? kHollow : kRound) * most;
 }
 
-// `bySize` with the largest first.
-std::vector<const Thing*> withoutShells(const std::vector<const Thing*>& bySize) {
-    std::vector<const Thing*> kept = bySize;
-    for (std::size_t i = 0; i < std::min(bySize.size(), kMostShells); ++i) {
-        const Thing& thing = *bySize[i];
-        std::vector<const Thing*> smaller;
-        for (const Thing* other : bySize)
-            if (diagonal(other->box) < kSmaller * diagonal(thing.box)) smaller.push_back(other);
-        if (smaller.empty()) continue;
-        Middle m = medianOf(smaller);
-        if (!isShellAround(thing, m)) continue;
-        grow(smaller, m);
-        if (isShellAround(thing, m)) std::erase(kept, &thing);
+bool isPlate(const Thing& thing, const Middle& m) {
+    const glm::dvec3 size = glm::dvec3(thing.box.max) - glm::dvec3(thing.box.min);
+    return diagonal(thing.box) > kLong * m.reach && std::min({size.x, size.y, size.z}) <= kFlat * diagonal(thing.box);
+}
+
+// What is smaller than so much of the thing decides, where that is no fewer things than the others.
+template <class Fits>
+bool isAround(const Thing& thing, const std::vector<const Thing*>& things, double ofItsSize, Fits fits) {
+    std::vector<const Thing*> smaller;
+    std::size_t triangles = 0;
+    for (const Thing* other : things) {
+        if (!(diagonal(other->box) < ofItsSize * diagonal(thing.box))) continue;
+        smaller.push_back(other);
+        triangles += other->triangles;
     }
-    return kept;
+    if (smaller.empty() || 2 * smaller.size() < things.size()) return false;
+    const Middle m = medianOf(smaller);
+    return fits(m, triangles) && fits(grown(smaller, m), triangles);
+}
+
+// `things` with the largest first.
+void dropWhatIsAround(std::vector<const Thing*>& things) {
+    for (std::size_t i = 0, looked = 0; i < things.size() && looked < kMostLookedAt; ++looked) {
+        const Thing& thing = *things[i];
+        const auto sky = [&](const Middle& m, std::size_t) { return isSky(thing, m); };
+        const auto plate = [&](const Middle& m, std::size_t triangles) {
+            return thing.triangles <= triangles && isPlate(thing, m);
+        };
+        if (isAround(thing, things, kSmallerThanSky, sky) || isAround(thing, things, kSmallerThanPlate, plate))
+            things.erase(things.begin() + static_cast<std::ptrdiff_t>(i));
+        else
+            ++i;
+    }
 }
 
 }  // namespace
@@ -139,37 +201,45 @@ std::vector<const Thing*> withoutShells(const std::vector<const Thing*>& bySize)
 Bulk::Bulk(std::span<const Thing> have, std::span<const Thing> more) {
     std::vector<const Thing*> things;
     for (const Thing& thing : have) things.push_back(&thing);
-    std::ranges::stable_sort(things,
-                             [](const Thing* a, const Thing* b) { return diagonal(a->box) > diagonal(b->box); });
-    Middle m = medianOf(withoutShells(things));
-    for (const Thing& thing : more) things.push_back(&thing);
-    grow(things, m);
+    std::ranges::stable_sort(things, std::greater<>(), [](const Thing* thing) { return diagonal(thing->box); });
+    for (const Thing& thing : have) leftOutThings_.emplace(thing.instance, thing.primitive);
+    dropWhatIsAround(things);
+    for (const Thing* thing : things) leftOutThings_.erase({thing->instance, thing->primitive});
+    Middle m = medianOf(things);
+    for (const Thing& thing : more)
+        if (!isLeftOut(thing)) things.push_back(&thing);
+    m = grown(things, m);
     middle_ = m.at;
     reach_ = m.reach;
     for (const Thing& thing : have) {
         size_ += thing.triangles;
-        if (holdsAllOf(thing)) continue;
-        if (holdsNothingOf(thing))
-            leftOut_ += thing.triangles;
-        else
-            for (std::size_t i = 0; i < thing.triangles; ++i) leftOut_ += holds(triangleOf(thing, i)) ? 0 : 1;
+        std::size_t held = 0;
+        if (holdsAllOf(thing) || (thing.positions == nullptr && holdsBoxOf(thing)))
+            held = thing.triangles;
+        else if (thing.positions != nullptr)
+            forEachHeld(thing, [&](const WorldTriangle&) { ++held; });
+        leftOut_ += thing.triangles - held;
     }
 }
 
-bool Bulk::holds(const WorldTriangle& triangle) const {
-    return joins(triangle, {middle_, reach_});
+bool Bulk::isLeftOut(const Thing& thing) const {
+    return leftOutThings_.contains({thing.instance, thing.primitive});
 }
 
-bool Bulk::holds(const Bounds& box) const {
-    return joins(box, {middle_, reach_});
+bool Bulk::isBeyond(const Thing& thing) const {
+    return nearest(thing.box, middle_) > kGap * reach_;
 }
 
 bool Bulk::holdsAllOf(const Thing& thing) const {
-    return thing.positions == nullptr ? holds(thing.box) : farthest(thing.box, middle_) <= reach_;
+    return !isLeftOut(thing) && farthest(thing.box, middle_) <= reach_;
 }
 
-bool Bulk::holdsNothingOf(const Thing& thing) const {
-    return thing.positions == nullptr ? !holds(thing.box) : nearest(thing.box, middle_) > kGap * reach_;
+bool Bulk::holdsBoxOf(const Thing& thing) const {
+    return !isLeftOut(thing) && joins(thing.box, {middle_, reach_});
+}
+
+bool Bulk::holds(const Thing& thing, const WorldTriangle& triangle) const {
+    return !isLeftOut(thing) && joins(triangle, {middle_, reach_});
 }
 
 }  // namespace gnomon::renderer

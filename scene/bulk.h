@@ -4,18 +4,28 @@
 // Problem: one parked vertex, a sky dome or a plate to the horizon makes the bounds say nothing about the rest.
 // Here: medians over triangles, then whatever is not far joins.
 //
-//     middle    m = median of the centres of the triangles, per axis
-//     reach     R = median of how far they reach from m
+//     weights   a triangle's area, at most 256 times the median one: neither a fine bulb in a room nor a coarse plate
+//               under a town has more to say than the rest
+//     middle    m = weighted median of the centres, per axis
+//     reach     R = weighted median of how far they reach from m
 //     joins     what comes nearer to m than 4 R, and is not longer than 64 R. Then R is as far as that reaches, and so
-//               on, until nothing joins
-//     shells    have no say in m and R: things all of which is farther than 4 R from the middle of those that are less
-//               than a quarter of their size, and that are around it. A sky may have more triangles than all below it
+//               on, until nothing joins. So only what has a gap around the rest is left out, or is as a horizon to it
 //
-// So only what has a gap around the rest is left out, or a plate that is 64 times as long. Medians take 2^16 triangles.
-// Limit: a sky that is one primitive with the rest, and has more triangles than it, is the bulk.
+// Some things are left out before, since they may outweigh all else. Each is judged by the middle and reach of smaller
+// things, where these are no fewer than the others:
+//
+//     a sky     is around the middle of what is less than 0.6 times its size, and all of it is beyond R. Either it is
+//               beyond 4 R, and its farthest point no farther than 4 times its nearest; or it is round, so that this is
+//               1.4 times, which no room is
+//     a plate   is flat, longer than 64 R of what is less than a quarter of its size, and has no more triangles than
+//     that
+//
+// Medians take 2^12 triangles. Limit: a sky of many triangles within the same primitive as all the rest is the bulk.
 
 #include <glm/glm.hpp>
+#include <set>
 #include <span>
+#include <utility>
 
 #include "scene/things.h"
 
@@ -28,17 +38,29 @@ public:
 
     [[nodiscard]] const glm::dvec3& middle() const { return middle_; }
     [[nodiscard]] double reach() const { return reach_; }
-    [[nodiscard]] bool holds(const WorldTriangle& triangle) const;
-    /// Of what has no vertices: the box stands for it.
-    [[nodiscard]] bool holds(const Bounds& box) const;
     /// Triangles of `have`, and those of them that are not held.
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] std::size_t leftOut() const { return leftOut_; }
-    /// Everything of the thing is held, or nothing; its triangles need not be asked.
+
+    /// True where no triangle need be asked.
     [[nodiscard]] bool holdsAllOf(const Thing& thing) const;
-    [[nodiscard]] bool holdsNothingOf(const Thing& thing) const;
+    /// Of a thing without vertices: its box stands for it.
+    [[nodiscard]] bool holdsBoxOf(const Thing& thing) const;
+    [[nodiscard]] bool holds(const Thing& thing, const WorldTriangle& triangle) const;
+    /// Calls `work` with each triangle that is held of a thing with vertices.
+    template <class Work>
+    void forEachHeld(const Thing& thing, Work work) const {
+        if (isLeftOut(thing) || isBeyond(thing)) return;
+        for (std::size_t i = 0; i < thing.triangles; ++i)
+            if (const WorldTriangle t = triangleOf(thing, i); holds(thing, t)) work(t);
+    }
 
 private:
+    using Key = std::pair<std::uint32_t, std::uint32_t>;  // instance and primitive
+    [[nodiscard]] bool isLeftOut(const Thing& thing) const;
+    [[nodiscard]] bool isBeyond(const Thing& thing) const;
+
+    std::set<Key> leftOutThings_;
     glm::dvec3 middle_{0.0};
     double reach_ = 0.0;
     std::size_t size_ = 0, leftOut_ = 0;

@@ -33,36 +33,42 @@ bool withinReach(const Bounds& box) {
 }
 
 void append(std::vector<Thing>& things, std::vector<Thing> more, bool anywhere) {
-    for (Thing& thing : more) {
-        if (thing.deforms) thing.positions = nullptr;  // gone with the pose
+    for (const Thing& thing : more)
         if (anywhere || withinReach(thing.box)) things.push_back(thing);
-    }
 }
 
-// All that is drawn, as playing begins, and what moves later. Lights where nothing is drawn.
+// All that is drawn, as playing begins, and what moves later: of what deforms the boxes alone.
 struct Drawn {
+    Pose pose;
     std::vector<Thing> first, later;
 };
+
+void addLater(std::vector<Thing> things, Drawn& drawn) {
+    for (Thing& thing : things)
+        if (thing.deforms) thing.positions = nullptr;  // gone with the pose
+    append(drawn.later, std::move(things), false);
+}
 
 Drawn everythingDrawn(const Scene& scene, const std::vector<bool>& moves) {
     Drawn drawn;
     bool begun = false;
     forEachPose(scene, kExtentSamples, [&](const Pose& pose) {
-        if (!begun) append(drawn.first, thingsOf(scene, pose, moves, false), false);
-        append(begun ? drawn.later : drawn.first, thingsOf(scene, pose, moves, true), false);
+        if (begun) return addLater(thingsOf(scene, pose, moves, true), drawn);
         begun = true;
+        drawn.pose = pose;
+        for (const bool moving : {false, true}) append(drawn.first, thingsOf(scene, drawn.pose, moves, moving), false);
     });
     if (!drawn.first.empty() || scene.instances.empty()) return drawn;
-    const Pose rest = restPose(scene);
-    for (const bool moving : {false, true}) append(drawn.first, thingsOf(scene, rest, moves, moving), true);
+    drawn.pose = restPose(scene);
+    for (const bool moving : {false, true}) append(drawn.first, thingsOf(scene, drawn.pose, moves, moving), true);
     return drawn;
 }
 
 std::vector<Thing> lightsAsThings(const Scene& scene) {
     const AnimatedExtent extent = animatedExtent(scene);
     std::vector<Thing> things;
-    for (std::size_t i = 0; i < scene.lights.size(); ++i)
-        if (scene.lights[i].kind != LightKind::Directional) things.push_back({extent.lights[i], 1});
+    for (std::uint32_t i = 0; i < scene.lights.size(); ++i)
+        if (scene.lights[i].kind != LightKind::Directional) things.push_back({extent.lights[i], i, 0, 1});
     return things;
 }
 
@@ -72,16 +78,15 @@ public:
     Framing(const Bulk& bulk, const glm::dmat3& axes) : bulk_(bulk), axes_(axes) {}
 
     void add(const Thing& thing) {
-        if (bulk_.holdsNothingOf(thing)) return;
-        if (thing.positions == nullptr) return addCorners(thing.box);
+        if (thing.positions == nullptr) return addCorners(thing);
         if (bulk_.holdsAllOf(thing)) return addVertices(thing);
-        for (std::size_t i = 0; i < thing.triangles; ++i)
-            if (const WorldTriangle t = triangleOf(thing, i); bulk_.holds(t))
-                for (const glm::dvec3& p : t) addPoint(p);
+        bulk_.forEachHeld(thing, [&](const WorldTriangle& t) {
+            for (const glm::dvec3& p : t) addPoint(p);
+        });
     }
     // As a whole, as the bulk has judged it.
     void addDeformed(const Thing& thing) {
-        if (bulk_.holds(thing.box)) addVertices(thing);
+        if (bulk_.holdsBoxOf(thing)) addVertices(thing);
     }
     [[nodiscard]] const Outline& outline() const { return outline_; }
 
@@ -90,10 +95,11 @@ private:
         for (const glm::vec3& p : *thing.positions)
             addPoint(glm::dvec3(thing.worldFromObject * glm::dvec4(glm::dvec3(p), 1.0)));
     }
-    void addCorners(const Bounds& box) {
+    void addCorners(const Thing& thing) {
+        if (!bulk_.holdsBoxOf(thing)) return;
+        const auto& [low, high] = thing.box;
         for (int corner = 0; corner < 8; ++corner)
-            addPoint(glm::dvec3(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                                corner & 4 ? box.max.z : box.min.z));
+            addPoint(glm::dvec3(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z));
     }
     void addPoint(const glm::dvec3& p) { outline_.add((p - bulk_.middle()) * axes_); }
 

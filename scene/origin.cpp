@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "scene/medians.h"
 #include "scene/pose.h"
 
 namespace gnomon::renderer {
@@ -13,6 +12,17 @@ namespace {
 constexpr double kReaches = 4.0;      // nearer than so many reaches of the content, another origin gains nothing
 constexpr double kLightRadius = 1.0;  // a lamp and its housing, so that one lamp near zero is not far
 constexpr double kSizes = 1024.0;     // beyond so many sizes, a float step shows on what has that size
+
+struct Ball {
+    glm::dvec3 centre{0.0};
+    double radius = 0.0;
+};
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
 
 Ball ballOf(const Bounds& box, const glm::dmat4& worldFromObject) {
     const glm::dvec3 low(box.min), high(box.max);
@@ -54,6 +64,16 @@ std::vector<Ball> drawnBalls(const Scene& scene) {
     return balls;
 }
 
+glm::dvec3 medianCentre(const std::vector<Ball>& balls) {
+    glm::dvec3 middle(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<double> along;
+        for (const Ball& ball : balls) along.push_back(ball.centre[axis]);
+        middle[axis] = median(std::move(along));
+    }
+    return middle;
+}
+
 }  // namespace
 
 glm::dvec3 originFor(const Scene& scene, std::span<const glm::dvec3> nodes, std::span<const glm::dvec3> lights) {
@@ -62,9 +82,12 @@ glm::dvec3 originFor(const Scene& scene, std::span<const glm::dvec3> nodes, std:
         for (const glm::dvec3& light : lights) balls.push_back({light, kLightRadius});
     if (balls.empty()) return glm::dvec3(0.0);
     const glm::dvec3 middle = medianCentre(balls);
-    std::vector<double> radii;
-    for (const Ball& ball : balls) radii.push_back(ball.radius);
-    const double reach = medianReach(balls, middle), far = glm::length(middle);
+    std::vector<double> reaches, radii;
+    for (const Ball& ball : balls) {
+        reaches.push_back(glm::length(ball.centre - middle) + ball.radius);
+        radii.push_back(ball.radius);
+    }
+    const double reach = median(std::move(reaches)), far = glm::length(middle);
     if (!(far > kReaches * reach) || !(far > kSizes * median(std::move(radii)))) return glm::dvec3(0.0);
     for (const glm::dvec3& node : nodes)
         if (glm::length(node - middle) <= kReaches * reach) return node;

@@ -1,6 +1,7 @@
 #include "scene/outline.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace gnomon::renderer {
@@ -12,8 +13,27 @@ bool turnsLeft(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0;
 }
 
+// Most points are within an octagon of eight outermost ones, and quickly told (Akl and Toussaint 1978).
+void dropInner(std::vector<glm::dvec2>& points) {
+    constexpr std::array<glm::dvec2, 8> kWays = {
+        {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+    std::array<glm::dvec2, 8> corners;
+    corners.fill(points.front());
+    for (const glm::dvec2& p : points)
+        for (std::size_t i = 0; i < kWays.size(); ++i)
+            if (glm::dot(p, kWays[i]) > glm::dot(corners[i], kWays[i])) corners[i] = p;
+    std::erase_if(points, [&](const glm::dvec2& p) {
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const glm::dvec2 &from = corners[i], &to = corners[(i + 1) % corners.size()];
+            if (from != to && !turnsLeft(from, to, p)) return false;
+        }
+        return corners[0] != corners[4];
+    });
+}
+
 // Andrew 1979: sorted points, the lower chain and then the upper one.
 std::vector<glm::dvec2> convexHull(std::vector<glm::dvec2> points) {
+    dropInner(points);
     std::ranges::sort(points, [](const auto& a, const auto& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
     std::vector<glm::dvec2> hull;
     for (int chain = 0; chain < 2; ++chain) {

@@ -40,16 +40,18 @@ std::vector<bool> movingInstances(const Scene& scene) {
 std::vector<Thing> thingsOf(const Scene& scene, const Pose& pose, const std::vector<bool>& moves, bool moving) {
     std::vector<Thing> things;
     auto posed = pose.deformed.begin();
-    for (std::size_t i = 0; i < scene.instances.size(); ++i)
-        for (const Primitive& primitive : scene.meshes[scene.instances[i].mesh].primitives) {
-            const bool bent = deforms(scene.instances[i], primitive);
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const std::vector<Primitive>& primitives = scene.meshes[scene.instances[i].mesh].primitives;
+        for (std::uint32_t k = 0; k < primitives.size(); ++k) {
+            const bool bent = deforms(scene.instances[i], primitives[k]);
             const PosedPrimitive* shape = bent ? &*posed++ : nullptr;
-            const Bounds& box = bent ? shape->bounds : primitive.bounds;
+            const Bounds& box = bent ? shape->bounds : primitives[k].bounds;
             if (moves[i] != moving || box.empty()) continue;
-            things.push_back({boxInWorld(box, pose.worldFromObject[i]), primitive.indices.size() / 3,
-                              bent ? &shape->positions : &primitive.positions, &primitive.indices,
+            things.push_back({boxInWorld(box, pose.worldFromObject[i]), i, k, primitives[k].indices.size() / 3,
+                              bent ? &shape->positions : &primitives[k].positions, &primitives[k].indices,
                               pose.worldFromObject[i], bent});
         }
+    }
     return things;
 }
 

@@ -13,6 +13,7 @@ using WorldTriangle = std::array<glm::dvec3, 3>;
 
 struct Thing {
     Bounds box;  ///< world, around all of it
+    std::uint32_t instance = 0, primitive = 0;
     std::size_t triangles = 0;
     /// Null where the vertices are gone: of something that deforms, after its pose.
     const std::vector<glm::vec3>* positions = nullptr;

@@ -69,8 +69,7 @@ void TriangleCells::fill(std::span<const GridTriangle> triangles, const std::vec
     for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
     members_.resize(starts_.back());
     std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
-    for (const std::uint32_t i : inBox)
-        forCells(triangles[i], [&](std::size_t cell) { members_[next[cell]++] = i; });
+    for (const std::uint32_t i : inBox) forCells(triangles[i], [&](std::size_t cell) { members_[next[cell]++] = i; });
 }
 
 TriangleCells::Cell TriangleCells::cellOf(const glm::vec3& point) const {

@@ -9,6 +9,10 @@
 
 namespace gnomon::renderer {
 
+[[nodiscard]] inline bool isWithin(const Bounds& inner, const Bounds& outer) {
+    return glm::all(glm::lessThanEqual(outer.min, inner.min)) && glm::all(glm::lessThanEqual(inner.max, outer.max));
+}
+
 struct GridTriangle {
     glm::vec3 a, b, c;
     bool doubleSided, subsurface;

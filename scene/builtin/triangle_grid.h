@@ -22,9 +22,17 @@ public:
 
     // The nearest hit within (0, reach); `direction` is unit.
     [[nodiscard]] std::optional<Hit> cast(const glm::vec3& origin, const glm::vec3& direction, float reach) const;
+    // The same among what touches the bounds: skies are not met.
+    [[nodiscard]] std::optional<Hit> castInBulk(const glm::vec3& origin, const glm::vec3& direction, float reach) const;
     [[nodiscard]] bool anythingWithin(const glm::vec3& point, float distance) const;
-    // More than a quarter of 14 rays all around, as long as the bulk is wide, meet the inside of a surface first.
-    [[nodiscard]] bool insideSolid(const glm::vec3& point) const;
+    // What 14 rays all around meet first, within the bulk.
+    struct Sight {
+        int rays = 0, fronts = 0, backs = 0;
+        // More than a quarter meet the inside of a surface.
+        [[nodiscard]] bool isInsideSolid() const { return 4 * backs > rays; }
+    };
+    [[nodiscard]] Sight sightFrom(const glm::vec3& point) const;
+    [[nodiscard]] bool insideSolid(const glm::vec3& point) const { return sightFrom(point).isInsideSolid(); }
 
 private:
     std::vector<Triangle> triangles_;

@@ -11,6 +11,7 @@
 
 #include "app/commands.h"
 #include "app/errors.h"
+#include "app/export_lights.h"
 #include "app/frame_json.h"
 #include "app/frame_table.h"
 #include "app/option_checks.h"
@@ -24,7 +25,7 @@ namespace {
 
 struct RenderOptions {
     Settings settings;
-    std::string png, exr, statistics;
+    std::string png, exr, statistics, lights;
     std::string shadows = "deferred";
     std::uint32_t frames = 1;
     double framesPerSecond = 30.0;
@@ -90,6 +91,8 @@ void writePictures(renderer::Renderer& renderer, const Session& session, const R
 
 void renderWithin(const renderer::VulkanInstance& instance, const RenderOptions& options) {
     const Session session(instance, options.settings);
+    exportLights(session, options.lights,
+                 frameTime(options.settings.time, options.frames - 1, options.framesPerSecond));
     const Stopwatch setUp;
     renderer::Renderer renderer(session.device(), session.scene(), session.rendererDesc());
     sayProgress(fmt::format("Set up in {:.1f} s.", setUp.seconds()));
@@ -113,7 +116,8 @@ int render(const RenderOptions& options) {
     if (!extension.empty() && extension != ".png")
         throw UsageError(fmt::format("'{}' is no name for a PNG file: it must end in .png.", options.png));
     if (options.sequence && options.png.empty()) throw UsageError("--sequence needs -o NAME.png to name its files by.");
-    std::vector<std::string> outputs = {options.exr, options.statistics};
+    checkExportLights(options.lights);
+    std::vector<std::string> outputs = {options.exr, options.statistics, options.lights};
     if (!options.sequence) outputs.push_back(options.png);
     for (std::uint32_t i = 0; options.sequence && i < options.frames; ++i)
         outputs.push_back(sequenceFile(options.png, i));
@@ -131,6 +135,7 @@ void addRenderCommand(CLI::App& app, Work& chosen) {
     command->add_option("-o,--output", options->png, "The picture, a PNG file")->check(fileName());
     command->add_option("--exr", options->exr, "The linear picture, an EXR file")->check(fileName());
     command->add_option("--stats", options->statistics, "Times, memory and counters, a JSON file")->check(fileName());
+    addExportLights(*command, options->lights);
     command->add_option("--shadows", options->shadows, "How lights are shadowed")
         ->check(CLI::IsMember({"deferred", "inline", "off"}))
         ->capture_default_str();

@@ -18,6 +18,7 @@ constexpr double kFlat = 0.125;
 constexpr double kHollow = 0.25;         // nearest to farthest point of what is around all else, with a gap
 constexpr double kRound = 0.7;           // without a gap: a cube has 0.58
 constexpr double kMostOfMedian = 256.0;  // areas; 16 times as long
+constexpr double kLeastParts = 6.0;      // of all weight, to one triangle
 constexpr std::size_t kMostSamples = 1u << 12;
 constexpr std::size_t kMostLookedAt = 16;  // things, the largest
 
@@ -81,6 +82,19 @@ double weightedMedian(std::vector<std::pair<double, double>> values) {
     return values.back().first;
 }
 
+// The most that one of these may have so that it has at most one of `parts` parts of all.
+double mostOfOne(std::vector<double> areas, double parts) {
+    std::ranges::sort(areas, std::greater<>());
+    double rest = 0.0;
+    for (const double area : areas) rest += area;
+    for (const double area : areas) {
+        if (parts <= 1.0 || area <= rest / parts) break;
+        rest -= area;
+        parts -= 1.0;
+    }
+    return rest / std::max(parts, 1.0);
+}
+
 // What has no area counts only where there is nothing else.
 void weigh(std::vector<Sample>& samples) {
     std::vector<double> areas;
@@ -92,7 +106,10 @@ void weigh(std::vector<Sample>& samples) {
     }
     const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
     std::ranges::nth_element(areas, middle);
-    for (Sample& s : samples) s.weight = std::min(s.weight, kMostOfMedian * *middle);
+    const double ofMedian = kMostOfMedian * *middle;
+    for (double& area : areas) area = std::min(area, ofMedian);
+    const double most = mostOfOne(areas, std::min(kLeastParts, 0.5 * static_cast<double>(areas.size())));
+    for (Sample& s : samples) s.weight = std::min(s.weight, most);
 }
 
 // Evenly over the triangles.

@@ -10,7 +10,8 @@
 // look up first. The room there is the free way up or, on other surfaces, along the normal; or the median of twelve
 // rays around the point, if that is less; in the open, a part of the triangle's size. The light hangs at 20 to 50 % of
 // that, with a quarter of its height free all around. It is never behind its own surface, so it shines on something.
-// Back faces around it count against a place, and less so after 64 and 128 refusals: files have them turned at random.
+// So a town turned inside out is lit from the inside, as it is drawn. Back faces all around count against a place, and
+// less so after 64 and 128 refusals, since files have them turned at random. So does being below all else, or outside.
 
 #include "scene/builtin/light_places.h"
 
@@ -94,6 +95,7 @@ std::optional<LightPlace> LightPlaces::tryRoom(const SurfaceSampler& feet, Rando
     if (above) room = std::min(room, above->distance);
     const float height = std::min(share * room, mostMetres);
     const glm::vec3 position = from + height * up;
+    if (strictness < 2 && !isWithin({position, position}, grid_.bounds())) return std::nullopt;
     if (position == from || grid_.anythingWithin(position, kFreeAround * height)) return std::nullopt;
     const TriangleGrid::Sight sight = grid_.sightFrom(position);
     const bool refused = strictness == 0 ? sight.isInsideSolid() : strictness == 1 && sight.backs > sight.fronts;

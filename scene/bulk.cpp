@@ -109,7 +109,7 @@ void weigh(std::vector<Sample>& samples) {
     const double ofMedian = kMostOfMedian * *middle;
     for (double& area : areas) area = std::min(area, ofMedian);
     const double most = mostOfOne(areas, std::min(kLeastParts, 0.5 * static_cast<double>(areas.size())));
-    for (Sample& s : samples) s.weight = std::min(s.weight, most);
+    for (Sample& s : samples) s.weight = std::min({s.weight, ofMedian, most});
 }
 
 // Evenly over the triangles.

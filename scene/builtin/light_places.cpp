@@ -9,9 +9,14 @@
 // By room. So the rest of the lights go by what is near. A random point of any surface is chosen by area, those that
 // look up first. The room there is the free way up or, on other surfaces, along the normal; or the median of twelve
 // rays around the point, if that is less; in the open, a part of the triangle's size. The light hangs at 20 to 50 % of
-// that, with a quarter of its height free all around. It is never behind its own surface, so it shines on something.
-// So a town turned inside out is lit from the inside, as it is drawn. Back faces all around count against a place, and
-// less so after 64 and 128 refusals, since files have them turned at random. So does being below all else, or outside.
+// that, with a quarter of its height free all around. It is never behind its own surface, so it shines on something
+// that is drawn: a town turned inside out is drawn from its inside, and lit there. What else is demanded becomes less
+// every 64 refusals:
+//
+//     within the bounds, outside solids, and not below all else
+//     within the bounds, with no more backs of faces around it than fronts: files have them turned at random
+//     outside solids
+//     nothing
 
 #include "scene/builtin/light_places.h"
 
@@ -22,8 +27,7 @@
 namespace gnomon::renderer {
 namespace {
 
-constexpr int kTriesPerLight = 64;
-constexpr int kStrictnesses = 3;
+constexpr int kTriesPerLight = 64;  // by each rule
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr float kGoldenAngle = 2.39996323f;
 
@@ -71,16 +75,16 @@ std::optional<LightPlace> LightPlaces::overFloors(Random& random) const {
 }
 
 std::optional<LightPlace> LightPlaces::byRoom(Random& random, float mostMetres) const {
-    for (int strictness = 0; strictness < kStrictnesses; ++strictness)
+    for (const Demand demand : {Demand::All, Demand::WithinBounds, Demand::OutsideSolids, Demand::None})
         for (int i = 0; i < kTriesPerLight; ++i) {
             const bool floors = !upward_.empty() && 2 * i < kTriesPerLight;
-            if (const auto place = tryRoom(floors ? upward_ : all_, random, mostMetres, strictness)) return place;
+            if (const auto place = tryRoom(floors ? upward_ : all_, random, mostMetres, demand)) return place;
         }
     return std::nullopt;
 }
 
 std::optional<LightPlace> LightPlaces::tryRoom(const SurfaceSampler& feet, Random& random, float mostMetres,
-                                               int strictness) const {
+                                               Demand demand) const {
     constexpr float kFreeAround = 0.25f;
     const SurfacePoint foot = feet.point(random);
     const float share = random.between(0.2f, 0.5f);
@@ -90,15 +94,17 @@ std::optional<LightPlace> LightPlaces::tryRoom(const SurfaceSampler& feet, Rando
     if (up.y > 0.5f) up = {0, 1, 0};
     const glm::vec3 from = foot.position + liftOff(foot) * up;
     const auto above = grid_.castInBulk(from, up, kFar);
-    if (strictness == 0 && up.y < -0.5f && !above) return std::nullopt;  // below the world
+    if (demand == Demand::All && up.y < -0.5f && !above) return std::nullopt;  // below the world
     float room = roomAround(from, up, foot.sizeMetres);
     if (above) room = std::min(room, above->distance);
     const float height = std::min(share * room, mostMetres);
     const glm::vec3 position = from + height * up;
-    if (strictness < 2 && !isWithin({position, position}, grid_.bounds())) return std::nullopt;
+    const bool withinBounds = demand == Demand::All || demand == Demand::WithinBounds;
+    if (withinBounds && !isWithin({position, position}, grid_.bounds())) return std::nullopt;
     if (position == from || grid_.anythingWithin(position, kFreeAround * height)) return std::nullopt;
     const TriangleGrid::Sight sight = grid_.sightFrom(position);
-    const bool refused = strictness == 0 ? sight.isInsideSolid() : strictness == 1 && sight.backs > sight.fronts;
+    const bool refused =
+        demand == Demand::WithinBounds ? sight.backs > sight.fronts : demand != Demand::None && sight.isInsideSolid();
     if (refused) return std::nullopt;
     return LightPlace{position, height, -up, true};
 }

@@ -33,8 +33,9 @@ public:
     [[nodiscard]] const SurfaceSampler& surfaces() const { return all_; }
 
 private:
+    enum class Demand { All, WithinBounds, OutsideSolids, None };
     [[nodiscard]] std::optional<LightPlace> tryRoom(const SurfaceSampler& feet, Random& random, float mostMetres,
-                                                    int strictness) const;
+                                                    Demand demand) const;
     [[nodiscard]] float roomAround(const glm::vec3& foot, const glm::vec3& up, float otherwise) const;
 
     const TriangleGrid& grid_;

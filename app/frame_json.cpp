@@ -36,7 +36,10 @@ Json sceneLightsOf(const Session& session, const FrameResult& result) {
         row["sourceRadiusGuessed"] = light.sourceIsGuessed;
         row["biasMetres"] = shortest(stated.value_or(renderer::kBiasMetres));
         row["biasStated"] = stated.has_value();
-        if (local && !stated) row["biasAtMostPerMetre"] = shortest(renderer::kMostBias);
+        if (local && !stated) {
+            row["biasAtMostPerMetre"] = shortest(renderer::kMostBias);
+            row["biasAtLeastPerMetre"] = shortest(renderer::kLeastBias);
+        }
         for (const float bias : result.cascadeBiases.at(i)) row["cascadeBiasMetres"].push_back(shortest(bias));
         out.push_back(std::move(row));
     }

@@ -71,7 +71,7 @@ FrameResult renderFrames(renderer::Renderer& renderer, const Session& session, c
         std::vector<float>& biases = result.cascadeBiases.emplace_back();
         if (light.kind != renderer::LightKind::Directional) continue;
         const float bias = statedBias(light, renderer.settings()).value_or(renderer::kBiasMetres);
-        for (const ShadowView& view : renderer.shadowViews(i)) biases.push_back(std::min(bias, view.mostBias));
+        for (const ShadowView& view : renderer.shadowViews(i)) biases.push_back(std::clamp(bias, view.leastBias, view.mostBias));
     }
     result.memory = renderer.memory();
     result.library = renderer.libraryMemory();

@@ -22,8 +22,9 @@ Interval biasedDepth(const ShadowViewModel& view, Interval linearDepth, Interval
 }
 
 Interval limitedBias(const ShadowViewModel& view, Interval linearDepth, const Bias& bias) {
-    const Interval most = view.orthographic ? rounded(view.mostBias) : rounded(view.mostBias) * max(linearDepth, 0.0);
-    return max(min(rounded(bias.metres), most), rounded(bias.leastMetres));
+    const Interval reach = view.orthographic ? Interval(1.0) : max(linearDepth, 0.0);
+    const Interval most = rounded(view.mostBias) * reach, least = rounded(view.leastBias) * reach;
+    return max(min(max(rounded(bias.metres), least), most), rounded(bias.leastMetres));
 }
 
 /// k raised to the least tilt, its sign kept: one interval, or two where the sign is open.

@@ -65,6 +65,7 @@ std::vector<ShadowViewModel> makeShadowViewModels(std::span<const ShadowView> vi
         model.pxPerMetreX = length(rowOf(model.clipFromWorld, 0)) * 0.5 * model.widthPx;
         model.pxPerMetreY = length(rowOf(model.clipFromWorld, 1)) * 0.5 * model.heightPx;
         model.mostBias = std::min(static_cast<double>(view.mostBias), model.mostBias);
+        model.leastBias = view.leastBias;
         result.push_back(model);
     }
     return result;
@@ -106,6 +107,8 @@ Findings checkShadowViews(std::span<const ShadowView> views, std::span<const gpu
                          view.pxPerMetre.y, model.pxPerMetreX, model.pxPerMetreY);
         if (!near(view.mostBias, model.mostBias, 1e-6 * model.mostBias))
             findings.add("shadow view %zu: bias of at most %g instead of %g", i, view.mostBias, model.mostBias);
+        if (!near(view.leastBias, model.leastBias, 1e-6 * model.leastBias))
+            findings.add("shadow view %zu: bias of at least %g instead of %g", i, view.leastBias, model.leastBias);
     }
     return findings;
 }

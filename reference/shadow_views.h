@@ -49,8 +49,8 @@ struct ShadowViewModel {
     DepthFromLinear depth;
     double depthStep = 0;                     ///< of the atlas
     double pxPerMetreX = 0, pxPerMetreY = 0;  ///< texels per metre, at linear depth 1 m (perspective) or anywhere
-    /// Of the lights' bias: a share of linear depth (perspective) or metres. At most what a float holds.
-    double mostBias = 3e38;
+    /// Of the lights' bias: shares of linear depth (perspective) or metres. At most what a float holds.
+    double mostBias = 3e38, leastBias = 0.0;
 };
 
 /// `atlases`: whence the depth steps, which are 0 where there are none.

@@ -7,6 +7,7 @@ namespace gnomon::reference {
 namespace {
 
 constexpr float kLimitedBias = 0.0004f;  // less than the lights' 2 mm up to 5 m, or anywhere
+constexpr float kRaisedBias = 0.004f;    // more than 2 mm from half a metre on, or anywhere
 
 Vec3 anyAcross(Vec3 direction) {
     const Vec3 helper = std::abs(direction.y) > 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -61,7 +62,10 @@ void place(std::vector<ShadowView>& views, const ShadowSetup& setup) {
     for (std::uint32_t i = 0; i < views.size(); ++i) {
         const std::uint32_t cell = i / (setup.atlasCount * setup.layers);
         ShadowView& view = views[i];
-        if (i % 3 == 0) view.mostBias = kLimitedBias;
+        if (i % 3 == 0)
+            view.mostBias = kLimitedBias;
+        else if (i % 5 == 1)
+            view.leastBias = kRaisedBias;
         view.atlas = i % setup.atlasCount;
         view.layer = i / setup.atlasCount % setup.layers;
         // One texel between cells, and around them.

@@ -4,6 +4,7 @@
     scripts/bias_tables.py bias-lab.json columns.json ...            of `gnomon verify --sweep --json`, a row per scene
     scripts/bias_tables.py ... --apart tiny-room huge-valley         these scenes below the mean of the others
     scripts/bias_tables.py --table2 table2.json                      of `gnomon bench --preset table2 --json`
+    scripts/bias_tables.py --truth bias-lab.json columns.json ...    of `gnomon verify --json`, a row per scene
     scripts/bias_tables.py ... --write docs/depth-bias.md            puts them between the page's marks
 
 A scene is called as its file.
@@ -128,6 +129,38 @@ def time_table(path):
         sys.exit(f"{path} is no JSON file of `gnomon bench --preset table2`: {type(error).__name__}: {error}.")
 
 
+TRUTH = ["scene", "pairs", "acne", "leak", "**both**", "contact leak", "edges", "edge error", "visibility error"]
+
+
+def truth_row(name, counts, compared, error):
+    pairs = max(counts["pairs"], 1)
+    share = {key: percent(100.0 * counts[key] / pairs) for key in ("acne", "leak", "contactLeak", "edgeError")}
+    both = percent(100.0 * (counts["acne"] + counts["leak"]) / pairs)
+    cells = [name, f"{counts['pairs']:,}", share["acne"], share["leak"], f"**{both}**", share["contactLeak"]]
+    cells += [f"{100.0 * counts['edges'] / pairs:.2f}", share["edgeError"], f"{error / max(compared, 1):.5f}"]
+    return "| " + " | ".join(cells) + " |"
+
+
+def truth_table(paths):
+    rows, sums, compared, error, with_what = [], {}, 0, 0.0, set()
+    for path in sorted(paths, key=lambda p: Path(p).stem):
+        try:
+            data = json.loads(Path(path).read_text(encoding="utf-8"))
+            total, counts = data["total"], data["total"]["counts"]
+            here = (total["visibilityError"] or 0.0) * counts["compared"]
+            rows.append(truth_row(f"`{Path(path).stem}`", counts, counts["compared"], here))
+            width, height = data["extent"]
+            with_what.add(f"{width}x{height}, filter {data['settings']['filter']}, {data['device']}, "
+                          f"commit {data['commit'][:7]}")
+        except (OSError, ValueError, KeyError, TypeError) as problem:
+            sys.exit(f"{path} is no JSON file of `gnomon verify`: {type(problem).__name__}: {problem}.")
+        sums = {key: sums.get(key, 0) + value for key, value in counts.items()}
+        compared, error = compared + counts["compared"], error + here
+    head = ["| " + " | ".join(TRUTH) + " |", "|---" + "|--:" * 8 + "|"]
+    said = "; ".join(sorted(with_what)) + ". Percent of pairs; the visibility error is from 0 to 1."
+    return "\n".join([said, ""] + head + rows + [truth_row("**all**", sums, compared, error)])
+
+
 def put_between(page, mark, table):
     """Replaces what stands between <!-- MARK --> and <!-- end of MARK -->."""
     try:
@@ -146,6 +179,7 @@ def main():
     parser.add_argument("files", nargs="*", help="JSON files of `gnomon verify --sweep`")
     parser.add_argument("--apart", nargs="+", default=[], metavar="SCENE", help="not in the total; below it")
     parser.add_argument("--table2", metavar="FILE", help="a JSON file of `gnomon bench --preset table2`")
+    parser.add_argument("--truth", nargs="+", metavar="FILE", help="JSON files of `gnomon verify`")
     parser.add_argument("--write", metavar="PAGE", help="into this page instead of standard output")
     arguments = parser.parse_args()
     tables = []
@@ -153,6 +187,8 @@ def main():
         tables.append(("sweep table", sweep_table(bias_results.load(arguments.files), arguments.apart)))
     if arguments.table2:
         tables.append(("time table", time_table(arguments.table2)))
+    if arguments.truth:
+        tables.append(("truth table", truth_table(arguments.truth)))
     if not tables:
         parser.error("no file is given")
     for mark, table in tables:

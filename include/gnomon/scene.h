@@ -97,11 +97,12 @@ struct ShadowView {
     float farMetres = std::numeric_limits<float>::infinity();  ///< infinity allowed for perspective views
     bool orthographic = false;
     DeviceDepth deviceDepth = DeviceDepth::ReversedZ;
-    /// Limits Light::biasMetres by what this view sees, at least 0. Perspective: a share of the receiver's distance
-    /// along the view's axis. Orthographic: metres. Infinity: the light's bias is taken as it is. The reference
-    /// renderer gives a five-hundredth, and of a cascade that of half its width: so 2 mm are never much, however
-    /// small the scene is.
+    /// Limit Light::biasMetres by what this view sees. Perspective: shares of the receiver's distance along the view's
+    /// axis. Orthographic: metres. 0 <= least <= most. As they are, the light's bias is taken as it is. The reference
+    /// renderer gives a five-hundredth and a fifty-thousandth, and of a cascade these shares of half its width. So 2 mm
+    /// are never much, however small the scene is, and never less than what rasterizers round, however large.
     float mostBias = std::numeric_limits<float>::infinity();
+    float leastBias = 0.0f;
     /// False promises that the View's previous frame had this very rectangle, and that its texels are still the same.
     /// Its shadow bounds are then kept. Set it true after a frame in which this shadow view was not given.
     bool changed = true;

@@ -88,7 +88,9 @@ void limitBiases(std::span<const SceneLight> lights, const FrameSettings& settin
         const SceneLight& light = lights[planned.light];
         if (statedBias(light, settings)) continue;
         const bool local = light.kind != LightKind::Directional;
-        planned.view.mostBias = local ? kMostBias : kMostBias * static_cast<float>(planned.cascade.halfExtent);
+        const float reach = local ? 1.0f : static_cast<float>(planned.cascade.halfExtent);
+        planned.view.mostBias = kMostBias * reach;
+        planned.view.leastBias = kLeastBias * reach;
     }
 }
 

@@ -84,8 +84,9 @@ struct GpuShadowView {
     vec3 planeZ;
     float depthStep;     // of the atlas, beyond that of floats
     vec2 tangentPerNdc;  // lateral over linear depth; orthographic: 0
-    float mostBias;      // of GpuLight::biasMetres: perspective: a share of linear depth; orthographic: metres
-    float reserved1;
+    // Between which GpuLight::biasMetres is taken: shares of linear depth (orthographic: metres).
+    float mostBias;
+    float leastBias;
 };
 
 // A cell of the shadow bounds to be made this frame.

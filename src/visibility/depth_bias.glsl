@@ -3,8 +3,9 @@
 // Problem: a shadowmap holds one depth per texel, that of the texel's centre. A surface seen at a slant is above that
 // depth on one side of the texel and below it on the other. So it shadows itself.
 // Source: the paper, section 4: a constant, 2 mm by default, in *linear* depth along the light's view axis. Slopes are
-// met at each texel by the receiver's own face plane, which is ours. So is a limit to the constant that goes by what the
-// view sees (ShadowView::mostBias): in a scene of 4 mm, 2 mm would be half the scene.
+// met at each texel by the receiver's own face plane, which is ours. So are limits to the constant that go by what the
+// view sees: in a scene of 4 mm, 2 mm would be half the scene (ShadowView::mostBias), and at 5 km they are less than
+// rasterizers round (ShadowView::leastBias).
 // Plain way: a hardware bias by slope, in device depth, as large as the widest kernel on the steepest face needs.
 // Here: along any plane, device depth is affine in a texel's position. That holds with perspective (A + B / z, and 1 /
 // z is affine) as without. So one depth and one slope per pixel give the plane's depth at every texel's centre. That is
@@ -50,7 +51,8 @@ vec2 planeSlope(GpuShadowView view, bool orthographic, vec3 n, vec2 ndc, float l
 // How far the point, at a linear depth, moves toward the light along the light's view axis, metres.
 float linearBias(GpuShadowView view, bool orthographic, GpuLight light, Receiver receiver, float linear) {
     precise float most = orthographic ? view.mostBias : view.mostBias * max(linear, 0.0);
-    float bias = min(light.biasMetres, most);
+    precise float least = orthographic ? view.leastBias : view.leastBias * max(linear, 0.0);
+    float bias = min(max(light.biasMetres, least), most);
     return receiver.subsurface ? max(bias, frame.subsurfaceBiasMetres) : bias;
 }
 

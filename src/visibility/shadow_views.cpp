@@ -41,8 +41,10 @@ Result checkView(std::size_t index, const ShadowView& view, std::span<const Shad
         return Result::failure(Status::BadArgument,
                                "Shadow view %u needs 0 < near < far (and a finite far plane if orthographic).", number);
     }
-    if (!(view.mostBias >= 0.0f)) {
-        return Result::failure(Status::BadArgument, "Shadow view %u: its mostBias must be at least 0.", number);
+    if (!(view.leastBias >= 0.0f && view.leastBias <= view.mostBias && std::isfinite(view.leastBias))) {
+        return Result::failure(Status::BadArgument,
+                               "Shadow view %u: its leastBias must be finite, at least 0 and at most its mostBias.",
+                               number);
     }
     return {};
 }
@@ -124,6 +126,7 @@ gpu::GpuShadowView convert(const ShadowView& view, const ShadowAtlas& atlas) {
         v.tangentPerNdc = {v.pxFromNdcScale.x / v.pxPerMetre.x, v.pxFromNdcScale.y / v.pxPerMetre.y};
     if (!setPlane(view.clipFromWorld, view.orthographic, b, atlas.depthStep, v)) v.pxPerMetre = {};
     v.mostBias = std::min(view.mostBias, kNoLimit);
+    v.leastBias = std::min(view.leastBias, v.mostBias);
     v.atlasPerTexel = {1.0f / static_cast<float>(atlas.widthPx), 1.0f / static_cast<float>(atlas.heightPx)};
     return v;
 }

@@ -35,10 +35,37 @@ std::string slidingTriangle(float reach) {
            R"("channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}]})";
 }
 
+TEST_F(Rendering, RendersAndDescribesAFrame) {
+    expectGood("render boxes --size 160x90 -o out.png --exr out.exr --stats out.json --frames 2");
+    const renderer::Picture picture = renderer::readPng(folder_ / "out.png");
+    EXPECT_EQ(picture.width, 160u);
+    EXPECT_EQ(picture.height, 90u);
+    EXPECT_TRUE(fs::exists(folder_ / "out.exr"));
+    const nlohmann::json json = readJson("out.json");
+    EXPECT_EQ(json["hash"], renderer::hashOf(picture));
+    EXPECT_EQ(json["lights"]["given"], 3);
+    EXPECT_EQ(json["counters"]["accurateExceedsApproximate"], 0);
+    EXPECT_GT(json["counters"]["meanShadowedLightsPerTile"], 0.0);
+    EXPECT_EQ(json["settings"]["filter"], "pcss");
+    EXPECT_EQ(json["extent"], (nlohmann::json{160, 90}));
+    EXPECT_GE(json["memory"]["library"]["lights"]["copies"], 2) << "one for each frame in flight";
+    EXPECT_EQ(json["memory"]["library"]["visibility"]["copies"], 1);
+    EXPECT_GT(json["memory"]["library"]["visibility"]["bytes"], 0);
+    for (const nlohmann::json& pass : json["passes"]) {
+        if (pass["name"] == "gbuffer") {
+            EXPECT_EQ(pass["kind"], "drawing");
+        }
+        if (pass["name"] == "generate_shadows") {
+            EXPECT_EQ(pass["kind"], "compute");
+        }
+        EXPECT_FALSE(pass.contains("drawing"));
+    }
+}
+
 TEST_F(Rendering, TimePasses) {
     std::ofstream(folder_ / "slide.gltf") << slidingTriangle(3.0f);
     // The default camera has all of the animation in view, or the triangle at rest where none plays.
-    const std::string render = "render slide.gltf --size 64x36 --exposure 0 --camera 1,1,6:1,0.5,0 ";
+    const std::string render = "render slide.gltf --size 64x36 --filter hard --exposure 0 --camera 1,1,6:1,0.5,0 ";
     expectGood(render + "-o start.png");
     expectGood(render + "--time 0.5 -o middle.png");
     expectGood(render + "--time 2 -o looped.png");

@@ -18,7 +18,7 @@ namespace {
 GNOMON_IMAGE_TEST_SUITE(FieldCases);
 
 constexpr const char* kNoField = "GNOMON_SCENES_DIR has no field scenes";
-constexpr double kMostWrong = 0.001, kMostContactsLost = 0.05, kMostEdges = 0.05;
+constexpr double kMostFieldWrong = 0.001, kMostFieldContactsLost = 0.05, kMostEdges = 0.05, kMostError = 0.005;
 
 // Empty where GNOMON_SCENES_DIR names no folder with it.
 std::optional<View3d> field(const std::string& file) {
@@ -33,9 +33,13 @@ std::optional<View3d> field(const std::string& file) {
 }
 
 
-// Linear, of the pixel in the middle.
-float centreOf(const HdrPicture& picture, std::size_t channel) {
-    return picture.rgba[4 * (std::size_t{picture.height / 2} * picture.width + picture.width / 2) + channel];
+// Green radiance of the pixel in the middle, by the file's lights alone. Empty as field().
+std::optional<float> litCentre(const Device& device, const std::string& file) {
+    std::optional<View3d> view = field(file);
+    if (!view) return std::nullopt;
+    view->scene.skyColour = view->scene.groundColour = glm::vec3(0.0f);
+    const HdrPicture picture = drawOnce(device, *view, hardDesc(161, 91), ShadowMode::Deferred).linear;
+    return picture.rgba[4 * (std::size_t{picture.height / 2} * picture.width + picture.width / 2) + 1];
 }
 
 // Shadows stand where rays say, and cover at least so many pixels.
@@ -45,9 +49,9 @@ void expectRight(const Device& device, const char* file, std::uint64_t leastDark
     if (!view) GTEST_SKIP() << kNoField;
     const Figures f = figuresIn(device, *view, hardDesc(320, 180));
     EXPECT_GE(f.dark, leastDark);
-    EXPECT_LE(f.share(f.acne + f.leak), kMostWrong);
+    EXPECT_LE(f.share(f.acne + f.leak), kMostFieldWrong);
     EXPECT_LE(f.share(f.edges), kMostEdges);
-    EXPECT_LE(f.visibilityError(), 2.0 * kMostWrong);
+    EXPECT_LE(f.visibilityError(), kMostError);
 }
 
 TEST_P(FieldCases, SunsThroughLongLenses) {
@@ -59,6 +63,8 @@ TEST_P(FieldCases, SunsThroughLongLenses) {
 TEST_P(FieldCases, SunsInWideWorlds) {
     expectRight(device(), "02-sun-lost-in-a-wide-world/park_sun_0.gltf", 100);
     expectRight(device(), "02-sun-lost-in-a-wide-world/park_sun_-99999.gltf", 100);
+    // Whole triangles of so large a ground have another depth in SwiftShader (docs/driver-ledger.md).
+    if (isSwiftShader(device())) return;
     expectRight(device(), "02-sun-lost-in-a-wide-world/world30000.gltf", 100);
 }
 
@@ -75,19 +81,17 @@ TEST_P(FieldCases, AParkedBoxChangesNothing) {
 // On the axis of a spot, irradiance is intensity over squared distance, whatever the cone.
 TEST_P(FieldCases, NarrowSpots) {
     for (const char* file : {"a_spot_o0.05.gltf", "a_spot_o0.0175.gltf"}) {
-        const std::optional<View3d> view = field(std::string("06-narrow-spot-dims/") + file);
-        if (!view) GTEST_SKIP() << kNoField;
-        EXPECT_NEAR(centreOf(drawOnce(device(), *view, hardDesc(321, 181), ShadowMode::Deferred).linear, 1), 6.19f, 0.03f)
-            << file;
+        const std::optional<float> centre = litCentre(device(), std::string("06-narrow-spot-dims/") + file);
+        if (!centre) GTEST_SKIP() << kNoField;
+        EXPECT_NEAR(*centre, 6.19f, 0.03f) << file;
     }
 }
 
 TEST_P(FieldCases, LampsWithinAMillimetre) {
     for (const char* file : {"a_macro_0.1.gltf", "a_macro_0.001.gltf"}) {
-        const std::optional<View3d> view = field(std::string("07-lamp-within-a-centimetre/") + file);
-        if (!view) GTEST_SKIP() << kNoField;
-        EXPECT_NEAR(centreOf(drawOnce(device(), *view, hardDesc(321, 181), ShadowMode::Deferred).linear, 1), 0.247f, 0.002f)
-            << file;
+        const std::optional<float> centre = litCentre(device(), std::string("07-lamp-within-a-centimetre/") + file);
+        if (!centre) GTEST_SKIP() << kNoField;
+        EXPECT_NEAR(*centre, 0.247f, 0.002f) << file;
     }
 }
 
@@ -156,8 +160,8 @@ TEST_P(FieldCases, InASceneOfFourMillimetres) {
     if (!view) GTEST_SKIP() << kNoField;
     const Figures f = figuresIn(device(), *view, hardDesc(480, 270));
     EXPECT_GT(f.contacts, 500u);
-    EXPECT_LE(f.share(f.acne + f.leak), kMostWrong);
-    EXPECT_LE(f.contactLeakOfContacts(), kMostContactsLost);
+    EXPECT_LE(f.share(f.acne + f.leak), kMostFieldWrong);
+    EXPECT_LE(f.contactLeakOfContacts(), kMostFieldContactsLost);
 }
 
 TEST_P(FieldCases, UnderASkyDome) {

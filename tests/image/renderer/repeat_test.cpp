@@ -33,10 +33,11 @@ void expectOneHash(const Device& device, const RendererDesc& desc, const char* n
 }
 
 TEST_P(Repeated, SameInputSamePicture) {
-    expectOneHash(device(), smallDesc(), "default pools");
-    RendererDesc few = smallDesc();
-    few.visibilitySlots = 300;
-    few.listEntries = 1500;
+    const RendererDesc desc = smallDesc(120, 68);
+    expectOneHash(device(), desc, "default pools");
+    RendererDesc few = desc;
+    few.visibilitySlots = 80;
+    few.listEntries = 400;
     expectOneHash(device(), few, "pools that overflow");
 }
 

@@ -42,13 +42,13 @@ const Change kChanges[] = {
     {"standard depth", [](FrameSettings& f) { f.deviceDepth = DeviceDepth::StandardZ; }},
     {"smaller",
      [](FrameSettings& f) {
-         f.widthPx = 131;
-         f.heightPx = 77;
+         f.widthPx = 67;
+         f.heightPx = 43;
      }},
     {"larger",
      [](FrameSettings& f) {
-         f.widthPx = 250;
-         f.heightPx = 141;
+         f.widthPx = 130;
+         f.heightPx = 75;
      },
      true},
     {"as it was again", [](FrameSettings&) {}},
@@ -56,7 +56,7 @@ const Change kChanges[] = {
 
 TEST_P(Switching, EveryPictureIsThatOfAFreshRenderer) {
     const View3d view = builtin("sundial", 16);
-    RendererDesc desc = smallDesc();
+    RendererDesc desc = smallDesc(120, 68);
     // Where pools overflow, other pipelines shade, which may differ in the last bit: they are large enough here.
     desc.listEntries = desc.visibilitySlots = 1u << 17;
     Renderer kept(device(), view.scene, desc, pipelinesOf(device()));

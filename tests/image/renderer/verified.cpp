@@ -33,6 +33,10 @@ Verified verified(const Device& device, const View3d& view, const RendererDesc& 
     return out;
 }
 
+bool isSwiftShader(const Device& device) {
+    return device.info().name.find("SwiftShader") != std::string::npos;
+}
+
 RendererDesc hardDesc(std::uint32_t widthPx, std::uint32_t heightPx) {
     RendererDesc desc = smallDesc(widthPx, heightPx);
     desc.frame.filters = {Filter::Hard};

@@ -16,6 +16,9 @@ struct Verified {
 /// `drawn`: what the renderer has in place of the scene that the truth traces.
 Verified verified(const Device& device, const View3d& view, const RendererDesc& desc, const Scene* drawn = nullptr);
 
+/// Its depths are rough where scenes are large.
+bool isSwiftShader(const Device& device);
+
 /// smallDesc() with hard shadows.
 RendererDesc hardDesc(std::uint32_t widthPx = 160, std::uint32_t heightPx = 90);
 /// Figures of verified(), printed.

@@ -56,7 +56,7 @@ std::vector<MemberLayout> gpuShadowView() {
             MEMBER(GpuShadowView, planeSlopePerPxX), MEMBER(GpuShadowView, planeY),
             MEMBER(GpuShadowView, planeSlopePerPxY), MEMBER(GpuShadowView, planeZ),
             MEMBER(GpuShadowView, depthStep),        MEMBER(GpuShadowView, tangentPerNdc),
-            MEMBER(GpuShadowView, mostBias),         MEMBER(GpuShadowView, reserved1)};
+            MEMBER(GpuShadowView, mostBias),         MEMBER(GpuShadowView, leastBias)};
 }
 
 std::vector<MemberLayout> gpuShadowBoundsCell() {

@@ -221,7 +221,8 @@ float sample(const LightModel& light, std::uint32_t index, const Pixel& pixel, F
     const View v(input.views[light.firstShadowView + index]);
     if (!v.model.orthographic && v.clip(3, p) <= 0) return 1;
     const float linear = v.model.orthographic ? 1.0f : std::max(v.clip(3, p), 0.0f);
-    float bias = std::min(float(light.biasMetres), float(v.model.mostBias) * linear);
+    const float least = float(v.model.leastBias) * linear, most = float(v.model.mostBias) * linear;
+    float bias = std::min(std::max(float(light.biasMetres), least), most);
     if (pixel.subsurface) bias = std::max(bias, float(input.subsurfaceBiasMetres));
     const float toward = pixel.subsurface || faces(light, pixel, p) ? 1.0f : -1.0f;
     if (input.bias == BiasMode::Unbiased) bias = 0;

@@ -1,4 +1,5 @@
 // Accessors without a bufferView hold zeros (glTF 2.0, section 5.1.1), wherever an accessor may stand.
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "gltf_files.h"
@@ -146,5 +147,5 @@ TEST(SceneAccessor, ManyZerosAreRefused) {
     };
     refused(4000000000u, 1);
     refused(18446744073709551615u, 1);
-    refused(4000000u, 20);
+    if (std::getenv("GNOMON_QUICK") == nullptr) refused(4000000u, 20);  // the sum; a minute with sanitizers
 }

@@ -21,7 +21,7 @@ protected:
 };
 
 TEST_F(ExportLights, ScatteredOnesAndTheScenesOwn) {
-    expectGood("render boxes --lights 12 --size 16x16 --stats out.json --export-lights lights.gltf");
+    expectGood("render boxes --lights 12 --shadows off --size 16x16 --stats out.json --export-lights lights.gltf");
     const renderer::Scene scene = read("lights.gltf");
     const nlohmann::json stats = readJson("out.json")["sceneLights"];
     ASSERT_EQ(scene.lights.size(), 15u);
@@ -64,7 +64,7 @@ TEST_F(ExportLights, AsTheyAreInTheLastFrame) {
 }
 
 TEST_F(ExportLights, OnlyWhatShines) {
-    expectGood("render boxes --light 1 --size 16x16 --export-lights lights.gltf");
+    expectGood("render boxes --light 1 --shadows off --size 16x16 --export-lights lights.gltf");
     const renderer::Scene scene = read("lights.gltf");
     ASSERT_EQ(scene.lights.size(), 1u);
     EXPECT_EQ(scene.lights[0].position, glm::vec3(1.5f, 2.0f, -1.3f));
@@ -73,7 +73,7 @@ TEST_F(ExportLights, OnlyWhatShines) {
 TEST_F(ExportLights, WithEveryCommandThatHasLights) {
     expectGood("verify boxes --lights 2 --filter hard --size 64x36 --quiet --export-lights verify.gltf");
     EXPECT_EQ(read("verify.gltf").lights.size(), 5u);
-    expectGood("bench boxes --lights 2 --size 64x64 --warmup 1 --frames 2 --export-lights bench.gltf");
+    expectGood("bench boxes --lights 2 --variants off --size 64x64 --warmup 1 --frames 2 --export-lights bench.gltf");
     EXPECT_EQ(read("bench.gltf").lights.size(), 5u);
 }
 

@@ -4,7 +4,8 @@
 // Problem: one parked vertex, a sky dome or a plate to the horizon makes the bounds say nothing about the rest.
 // Here: medians over triangles, then whatever is not far joins.
 //
-//     weights   a triangle's area, but at most 256 times the median one, and at most a sixth of all: neither a fine bulb
+//     weights   a triangle's area, but at most 256 times the median one, and at most a sixth of all: neither a fine
+//     bulb
 //               in a room, nor a coarse plate under a town, nor a broken vertex has more to say than the rest
 //     middle    m = weighted median of the centres, per axis
 //     reach     R = weighted median of how far they reach from m

@@ -157,9 +157,9 @@ SceneCamera defaultCamera(const Scene& scene) {
     if (!ofLights) addDeformed(scene, moves, framing);
     fit(framing.outline(), bulk.middle(), camera);
     if (bulk.leftOut() != 0)
-        camera.note =
-            fmt::format("The default camera leaves {} of {} {} out of its frame, which lie far around the rest.",
-                        bulk.leftOut(), bulk.size(), ofLights ? "lights" : "triangles");
+        camera.note = fmt::format(
+            "The default camera leaves {} of {} {} out of its frame, since they are far from the rest or around it.",
+            bulk.leftOut(), bulk.size(), ofLights ? "lights" : "triangles");
     return camera;
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "scene/builtin/builtin.h"
+#include "scene/builtin/tile_samples.h"
 #include "scene/builtin/triangle_grid.h"
 #include "scene/load_gltf.h"
 #include "unit/builtin/cities.h"
@@ -130,6 +131,16 @@ TEST(ScatterAnywhere, InSmallAndStrangeScenes) {
     Scene sky = cities::city();
     cities::box(cities::add(sky, "sky box", {}, {}), glm::vec3(-145, -420, -145), glm::vec3(695, 420, 695));
     expectPlaces(sky, "a sky box just around a town, outward", false);
+}
+
+// Tiles that show the sky count as any others.
+TEST(ScatterAnywhere, GivesTheDensityUnderASky) {
+    Scene scene = cities::withTriangleAt(cities::withSky(cities::city(), {275, 0, 275}, 5000.0f), {1e6f, 0, 0});
+    const TileDensity density{3.0f, defaultCamera(scene), 640, 360};
+    scatterLights(scene, 64, 1, &density);
+    EXPECT_EQ(scene.lights.size(), 64u);
+    EXPECT_TRUE(scene.notes.empty()) << scene.notes.front();
+    EXPECT_NEAR(TileSamples(TriangleGrid(scene), density).meanShadowed(scene.lights), 3.0f, 0.15f);
 }
 
 // 200 rooms of 1 m within 10 km: no share of the whole says anything about them.

@@ -169,5 +169,24 @@ TEST(DefaultCamera, FramesAllOfAnAnimation) {
     expectFramed(both, camera);
 }
 
+// Skies often turn. In no pose do they count.
+TEST(DefaultCamera, LeavesOutSkiesThatTurn) {
+    Scene scene = cities::withSky(house(), glm::vec3(0), 500.0f);
+    scene.nodes.resize(1);
+    scene.instances.back().node = 0;
+    Animation animation;
+    animation.durationSeconds = 4.0f;
+    animation.channels.push_back({0,
+                                  AnimationChannel::Path::Rotation,
+                                  AnimationChannel::Interpolation::Linear,
+                                  {0, 4},
+                                  {0, 0, 0, 1, 0, 0.7071068f, 0, 0.7071068f}});
+    scene.animations.push_back(animation);
+    ASSERT_TRUE(isAnimated(scene));
+    const SceneCamera camera = defaultCamera(scene);
+    EXPECT_FALSE(camera.note.empty());
+    expectFramed(house(), camera);
+}
+
 }  // namespace
 }  // namespace gnomon::renderer

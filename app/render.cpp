@@ -11,6 +11,7 @@
 
 #include "app/commands.h"
 #include "app/errors.h"
+#include "app/export_lights.h"
 #include "app/frame_files.h"
 #include "app/frame_json.h"
 #include "app/frame_table.h"
@@ -26,7 +27,7 @@ namespace {
 
 struct RenderOptions {
     Settings settings;
-    std::string png, exr, statistics;
+    std::string png, exr, statistics, lights;
     std::string exrType = "half";
     FrameFiles files;
     std::string shadows = "deferred";
@@ -112,6 +113,8 @@ void printWritten(const RenderOptions& options) {
 void renderWithin(const renderer::VulkanInstance& instance, const RenderOptions& options) {
     const Session session(instance, options.settings);
     const std::vector<std::uint32_t> lights = visibilityLights(options.files, session);
+    exportLights(session, options.lights,
+                 frameTime(options.settings.time, options.frames - 1, options.framesPerSecond));
     const Stopwatch setUp;
     renderer::RendererDesc desc = session.rendererDesc();
     desc.floatPicture = floatPicture(options);
@@ -135,8 +138,9 @@ int render(const RenderOptions& options) {
     checkExtension(options.exr, ".exr");
     checkFrameFiles(options.files, options.shadows);
     if (options.sequence && options.png.empty()) throw UsageError("--sequence needs -o NAME.png to name its files by.");
+    checkExportLights(options.lights);
     std::vector<std::string> outputs = namesOf(options.files);
-    outputs.insert(outputs.end(), {options.exr, options.statistics});
+    outputs.insert(outputs.end(), {options.exr, options.statistics, options.lights});
     if (!options.sequence) outputs.push_back(options.png);
     for (std::uint32_t i = 0; options.sequence && i < options.frames; ++i)
         outputs.push_back(sequenceFile(options.png, i));
@@ -163,6 +167,7 @@ void addRenderCommand(CLI::App& app, Work& chosen) {
         ->capture_default_str();
     addFrameFiles(*command, options->files);
     command->add_option("--stats", options->statistics, "Times, memory and counters, a JSON file")->check(fileName());
+    addExportLights(*command, options->lights);
     command->add_option("--shadows", options->shadows, "How lights are shadowed")
         ->check(CLI::IsMember({"deferred", "inline", "off"}))
         ->capture_default_str();

@@ -144,6 +144,7 @@ Session::Session(const renderer::VulkanInstance& instance, const Settings& setti
       scene_(loadScene(settings, desc_)),
       camera_(cameraOf(settings, scene_)) {
     checkReachable(scene_, camera_);
+    if (!camera_.note.empty()) scene_.notes.push_back(camera_.note);
     sayProgress(fmt::format("Scene {}: {} triangles, {} lights.", settings.scene, renderer::triangleCount(scene_),
                             scene_.lights.size()));
     for (std::size_t i = 0; i < std::min(scene_.notes.size(), kMostNotes); ++i) sayWarning(scene_.notes[i]);

@@ -15,6 +15,8 @@
 #include <limits>
 
 #include "scene/pose.h"
+#include "scene/things.h"
+#include "scene/triangle_distance.h"
 
 namespace gnomon::renderer {
 namespace {
@@ -60,23 +62,6 @@ std::vector<Run> runsOf(const Scene& scene, const Pose& pose, const std::vector<
             addRuns(posed.positions, mesh.primitives[posed.primitive].indices, posed.instance, pose, runs);
     }
     return runs;
-}
-
-double distanceToSegment(const glm::dvec3& a, const glm::dvec3& b) {
-    const glm::dvec3 along = b - a;
-    const double squared = glm::dot(along, along);
-    const double t = squared > 0.0 ? std::clamp(-glm::dot(a, along) / squared, 0.0, 1.0) : 0.0;
-    return glm::length(a + t * along);
-}
-
-// From the origin.
-double distanceToTriangle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-    const glm::dvec3 normal = glm::cross(b - a, c - a);
-    const double area = glm::length(normal);
-    const bool above = area > 0.0 && glm::dot(glm::cross(b - a, normal), a) >= 0.0 &&
-                       glm::dot(glm::cross(c - b, normal), b) >= 0.0 && glm::dot(glm::cross(a - c, normal), c) >= 0.0;
-    if (above) return std::abs(glm::dot(normal, a)) / area;
-    return std::min({distanceToSegment(a, b), distanceToSegment(b, c), distanceToSegment(c, a)});
 }
 
 // What a light reaches, but for its range: within the planes through the light, all of whose normals point inwards.
@@ -150,14 +135,7 @@ std::vector<float> nearestSurfaces(const Scene& scene, const std::vector<bool>& 
     if (lights.empty()) return nearest;
 
     const bool animated = isAnimated(scene);
-    std::vector<bool> moves(scene.instances.size());
-    for (std::size_t i = 0; i < moves.size(); ++i) {
-        const Instance& instance = scene.instances[i];
-        const std::vector<Primitive>& primitives = scene.meshes[instance.mesh].primitives;
-        moves[i] = animated && (instance.node != kNone || std::ranges::any_of(primitives, [&](const Primitive& p) {
-                                    return deforms(instance, p);
-                                }));
-    }
+    const std::vector<bool> moves = movingInstances(scene);
     bool first = true;
     std::vector<Run> still;
     forEachPose(scene, kExtentSamples, [&](const Pose& pose) {

@@ -137,6 +137,7 @@ struct SceneCamera {
     float farMetres = std::numeric_limits<float>::infinity();
     float widthOverHeight = 0.0f;  // of what it shows at least; 0: as wide as the picture
     std::uint32_t node = kNone;    // moves with this node
+    std::string note;              // what it leaves out, one sentence; empty: nothing
 };
 
 struct Scene {
@@ -175,7 +176,8 @@ void completeLights(Scene& scene);
 /// comes from the left and above of defaultCamera(), and is five to ten times as strong as the scene's ambient light.
 void lightIfDark(Scene& scene);
 
-/// The scene's first camera; without one, a camera that frames the bounds from the front right and above.
+/// The scene's first camera. Without one, a camera from the front right and above that frames the bulk of the scene
+/// (scene/bulk.h) in a picture of any shape; its note says what is outside.
 SceneCamera defaultCamera(const Scene& scene);
 
 /// World from camera, for one that looks from `eye` at `target` with y up, or looks along y with -z up.

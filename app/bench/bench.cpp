@@ -12,6 +12,7 @@
 #include "app/bench/report.h"
 #include "app/commands.h"
 #include "app/errors.h"
+#include "app/export_lights.h"
 #include "app/option_checks.h"
 #include "app/outputs.h"
 #include "app/progress.h"
@@ -26,7 +27,7 @@ struct BenchOptions {
     std::uint32_t warmUp = 20, frames = 200;
     double framesPerSecond = 0.0;
     std::vector<std::string> variants = {"deferred", "inline"};
-    std::string preset, json;
+    std::string preset, json, lights;
     bool floor = false;
 };
 
@@ -130,6 +131,7 @@ void checkLists(const std::vector<Variant>& variants) {
 
 void benchWithin(const renderer::VulkanInstance& instance, const BenchOptions& options) {
     const Session session(instance, options.settings);
+    exportLights(session, options.lights, options.settings.time);
     if (session.device().timestampPeriodNs() == 0.0)
         throw std::runtime_error(fmt::format("'{}' has no timestamps to measure with.", session.device().info().name));
     Measurement measured = {session, measure(session, options), std::nullopt, options.warmUp, options.framesPerSecond};
@@ -151,7 +153,9 @@ int bench(const BenchOptions& options) {
         if (!names.insert(name).second) throw UsageError(fmt::format("--variants names '{}' twice.", name));
     }
     checkPreset(options.preset, options.variants);
-    checkOutputs({&options.json, 1}, {&options.settings.scene, 1});
+    checkExportLights(options.lights);
+    const std::string outputs[] = {options.json, options.lights};
+    checkOutputs(outputs, {&options.settings.scene, 1});
     const renderer::VulkanInstance instance(instanceDescOf(options.settings));
     benchWithin(instance, options);
     return exitCodeOf(instance, options.settings);
@@ -182,6 +186,7 @@ void addBenchCommand(CLI::App& app, Work& chosen) {
     command->add_flag("--floor", options->floor,
                       "Measure the device's copies and texture samples too, and how far each pass is from them");
     command->add_option("--json", options->json, "Write the measurement to a file")->check(fileName());
+    addExportLights(*command, options->lights);
     addSettings(*command, options->settings);
     command->callback([&chosen, options, command] {
         const auto given = [command](const char* option) { return command->get_option(option)->count() != 0; };

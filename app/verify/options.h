@@ -11,7 +11,7 @@ namespace gnomon::app {
 
 struct VerifyOptions {
     Settings settings;
-    std::string json, maps, edgeSet = "footprint";
+    std::string json, maps, exportedLights, edgeSet = "footprint";
     std::vector<std::uint32_t> lights;  // empty: all
     std::uint32_t rays = 256, subset = 16, flickerFrames = 0;
     bool sweep = false;

@@ -8,6 +8,7 @@
 
 #include "app/commands.h"
 #include "app/errors.h"
+#include "app/export_lights.h"
 #include "app/option_checks.h"
 #include "app/outputs.h"
 #include "app/progress.h"
@@ -30,6 +31,7 @@ std::vector<BiasSetting> sweepOf(const VerifyOptions& options) {
 
 void verifyWithin(const renderer::VulkanInstance& instance, const VerifyOptions& options) {
     const Session session(instance, options.settings);
+    exportLights(session, options.exportedLights, options.settings.time);
     for (const std::uint32_t light : options.lights) checkLight(light, session.scene());
     const Stopwatch setUp;
     Verification verification(session, options, sweepOf(options));
@@ -56,10 +58,12 @@ int verify(const VerifyOptions& options) {
     if (options.settings.unquantised)
         throw UsageError("--unquantised has no meaning here: verify reads what is stored.");
     // What is refused leaves no folder behind. A file within a folder that is still to be made has to wait for it.
-    const bool withinMaps = liesIn(options.json, options.maps);
-    if (!withinMaps) checkOutputs({&options.json, 1}, {&options.settings.scene, 1});
+    checkExportLights(options.exportedLights);
+    const std::string outputs[] = {options.json, options.exportedLights};
+    const bool withinMaps = liesIn(options.json, options.maps) || liesIn(options.exportedLights, options.maps);
+    if (!withinMaps) checkOutputs(outputs, {&options.settings.scene, 1});
     prepareFolder(options.maps);
-    if (withinMaps) checkOutputs({&options.json, 1}, {&options.settings.scene, 1});
+    if (withinMaps) checkOutputs(outputs, {&options.settings.scene, 1});
     const renderer::VulkanInstance instance(instanceDescOf(options.settings));
     verifyWithin(instance, options);
     return exitCodeOf(instance, options.settings);
@@ -71,6 +75,7 @@ void addVerifyCommand(CLI::App& app, Work& chosen) {
     CLI::App* command = app.add_subcommand("verify", "Compare the shadows of one frame with ray-traced truth");
     const auto options = std::make_shared<VerifyOptions>();
     command->add_option("--json", options->json, "All figures, a JSON file")->check(fileName());
+    addExportLights(*command, options->exportedLights);
     command->add_option("--maps", options->maps, "A folder for one picture per light: truth, result, errors")
         ->check([](const std::string& name) { return name.empty() ? "give a folder's name" : std::string(); });
     command->add_option("--light", options->lights, "Only this light of the scene, counted from 0; may be repeated");

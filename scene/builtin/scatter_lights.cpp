@@ -1,10 +1,9 @@
 // Scattering lights over any scene, of any size.
 //
-// Place. A random point of a random upward-facing triangle is chosen by area (normal within 60 degrees of up; all
-// triangles where there is none). From there the light goes a random way up: 2 to 15 % of the scene's height, but at
-// most half of the free way to whatever is above. Three kinds of places are refused: outside the bounds, closer than
-// 0.2 % of the bounds' radius to a triangle, and inside a solid. After 64 refusals per light the scene is taken to be
-// full.
+// Place. light_places.cpp has two rules. The first one hangs lights over floors, by shares of the scene's size. Where
+// it finds no place for a light, the second one takes over, for this light and all after it: it goes by the room around
+// a place. Once ranges are known, it also moves the lights that shine on nothing within their range, so that each of
+// them lights something. With a TileDensity these stay: ranges were chosen by what each light reaches.
 //
 // Range. As in a lit game level, the mean number of lights in range of a random surface point shall be 4.5, whatever
 // the scene and the count. Instead of a formula for an ideal floor, the range is found by bisection over 512 random
@@ -17,50 +16,23 @@
 // scene's unit nor on the count. Source radius: 0.8 to 4 % of the free way that was used, 2 to 10 cm in a room.
 
 #include "scene/builtin/builtin.h"
+#include "scene/builtin/light_places.h"
 #include "scene/builtin/random.h"
 #include "scene/builtin/tile_samples.h"
 #include "scene/builtin/triangle_grid.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace gnomon::renderer {
 namespace {
 
 constexpr float kMeanLightsPerPoint = 4.5f;
-constexpr int kTriesPerLight = 64;
 constexpr int kSurfacePoints = 512;
+constexpr std::uint64_t kMostMoved = 1u << 20;  // lights of one seed
+constexpr float kLeastRange = 1e-6f;            // radii of the bulk
 constexpr float kDegree = 0.01745329252f;
-
-// Chooses triangles by area among those that `accept` takes.
-class SurfaceSampler {
-public:
-    template <class Accept>
-    SurfaceSampler(const TriangleGrid& grid, Accept accept) : grid_(grid) {
-        double sum = 0.0;
-        for (std::uint32_t i = 0; i < grid.triangles().size(); ++i) {
-            const glm::vec3 n = grid.triangles()[i].areaNormal();
-            if (!accept(glm::normalize(n))) continue;
-            sum += glm::length(n);
-            sums_.push_back(sum);
-            triangles_.push_back(i);
-        }
-    }
-    [[nodiscard]] bool empty() const { return triangles_.empty(); }
-
-    glm::vec3 point(Random& random) const {
-        const double at = sums_.back() * static_cast<double>(random.unit()) + sums_.back() * random.unit() / 16777216.0;
-        const auto found = std::lower_bound(sums_.begin(), sums_.end() - 1, at) - sums_.begin();
-        const TriangleGrid::Triangle& t = grid_.triangles()[triangles_[static_cast<std::size_t>(found)]];
-        const float root = std::sqrt(random.unit()), along = random.unit();
-        return (1.0f - root) * t.a + root * (1.0f - along) * t.b + root * along * t.c;
-    }
-
-private:
-    const TriangleGrid& grid_;
-    std::vector<double> sums_;
-    std::vector<std::uint32_t> triangles_;
-};
 
 glm::vec3 pleasantColour(Random& random) {
     // Half warm (orange to yellow), a third cool (teal to blue), the rest pink and violet; never fully saturated.
@@ -77,32 +49,7 @@ glm::vec3 pleasantColour(Random& random) {
     return colour;
 }
 
-struct Place {
-    glm::vec3 position;
-    float free;  // metres of air below, down to the surface it was thrown from
-};
-
-std::optional<Place> findPlace(const TriangleGrid& grid, const SurfaceSampler& surfaces, Random& random) {
-    const float radius = grid.bounds().radius(), clearance = 0.002f * radius;
-    const float height = std::max(grid.bounds().max.y - grid.bounds().min.y, 0.2f * radius);
-    for (int i = 0; i < kTriesPerLight; ++i) {
-        const glm::vec3 foot = surfaces.point(random) + glm::vec3(0, 1e-5f * radius, 0);
-        const float wanted = height * random.between(0.02f, 0.15f);
-        const auto above = grid.cast(foot, {0, 1, 0}, 2.0f * wanted);
-        if (above && above->backFace) continue;
-        const float up = above ? std::min(wanted, 0.5f * above->distance) : wanted;
-        const Place place{foot + glm::vec3(0, up, 0), up};
-        // A flat scene has no height: there, lights hang above its bounds.
-        const bool flat = grid.bounds().max.y - grid.bounds().min.y < 0.02f * radius;
-        if (place.position.y > grid.bounds().max.y && !flat) continue;
-        if (up < clearance || grid.anythingWithin(place.position, clearance) || grid.insideSolid(place.position))
-            continue;
-        return place;
-    }
-    return std::nullopt;
-}
-
-SceneLight makeLight(const Place& place, Random& random, std::uint32_t index) {
+SceneLight makeLight(const LightPlace& place, Random& random, std::uint32_t index) {
     SceneLight light;
     light.name = "scattered " + std::to_string(index);
     light.position = place.position;
@@ -113,8 +60,7 @@ SceneLight makeLight(const Place& place, Random& random, std::uint32_t index) {
     const float cone = kDegree * random.between(20.0f, 60.0f);
     if (spot) {
         light.kind = LightKind::Spot;
-        light.direction = glm::normalize(
-            glm::vec3(std::sin(tilt) * std::cos(turn), -std::cos(tilt), std::sin(tilt) * std::sin(turn)));
+        light.direction = tilted(place.down, place.aims ? std::min(tilt, 0.5f * cone) : tilt, turn);
         light.outerConeAngle = cone;
         light.innerConeAngle = 0.7f * cone;
     }
@@ -133,7 +79,11 @@ float meanLightsPerPoint(const std::vector<SceneLight>& lights, const std::vecto
 }
 
 float commonRange(const std::vector<SceneLight>& lights, const std::vector<glm::vec3>& points, float radius) {
-    float low = 0.01f * radius, high = 1.0f * radius;  // never beyond the scene's own radius
+    float low = 0.01f * radius, high = 1.0f * radius;  // never beyond the bulk's own radius
+    while (low > kLeastRange * radius && meanLightsPerPoint(lights, points, low) >= kMeanLightsPerPoint) {
+        high = low;
+        low *= 0.01f;
+    }
     for (int i = 0; i < 20; ++i) {
         const float middle = 0.5f * (low + high);
         (meanLightsPerPoint(lights, points, middle) < kMeanLightsPerPoint ? low : high) = middle;
@@ -176,9 +126,41 @@ std::vector<SceneLight> lightsInEmptySpace(std::uint32_t count, Random& random) 
     std::vector<SceneLight> lights;
     for (std::uint32_t i = 0; i < count; ++i) {
         const glm::vec3 at(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
-        lights.push_back(makeLight({at, 1.0f}, random, i));
+        lights.push_back(makeLight({at, 1.0f, {0, -1, 0}, false}, random, i));
     }
     return lights;
+}
+
+// Fewer than `count` where not even the second rule finds a place, with a note.
+std::vector<SceneLight> lightsInPlaces(Scene& scene, const LightPlaces& places, std::uint32_t count, Random& random) {
+    std::vector<SceneLight> lights;
+    bool byRoom = false;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        std::optional<LightPlace> place;
+        if (!byRoom) place = places.overFloors(random);
+        byRoom = !place;
+        if (byRoom) place = places.byRoom(random, std::numeric_limits<float>::infinity());
+        if (!place) break;
+        lights.push_back(makeLight(*place, random, i));
+    }
+    if (lights.size() < count)
+        scene.notes.push_back("Only " + std::to_string(lights.size()) + " of " + std::to_string(count) +
+                              " scattered lights found a free place: everywhere else surfaces are too close together.");
+    return lights;
+}
+
+// Each by numbers of its own, so that the others stay as they are.
+void moveWhatShinesOnNothing(std::vector<SceneLight>& lights, const LightPlaces& places, std::uint64_t seed) {
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        SceneLight& light = lights[i];
+        if (places.shinesOnAnything(light)) continue;
+        Random own(seed * kMostMoved + i + 1);
+        const std::optional<LightPlace> place = places.byRoom(own, 0.5f * light.rangeMetres);
+        if (!place) continue;
+        light.position = place->position;
+        light.direction = place->down;
+        light.sourceRadius = std::min(light.sourceRadius, 0.04f * place->free);
+    }
 }
 
 }  // namespace
@@ -190,30 +172,22 @@ void scatterLights(Scene& scene, std::uint32_t count, std::uint64_t seed, const 
     Random random(seed);
     const TriangleGrid grid(scene);
     std::vector<SceneLight> lights;
-    float range = 2.0f * std::cbrt(kMeanLightsPerPoint / static_cast<float>(count));  // metres, in empty space
     if (grid.triangles().empty()) {
         lights = lightsInEmptySpace(count, random);
         scene.notes.push_back("No geometry: the scattered lights fill a box of 2 m around the origin.");
+        finish(lights, 2.0f * std::cbrt(kMeanLightsPerPoint / static_cast<float>(count)), random);  // metres
     } else {
-        const SurfaceSampler all(grid, [](const glm::vec3&) { return true; });
-        const SurfaceSampler upward(grid, [](const glm::vec3& n) { return n.y > 0.5f; });
-        const SurfaceSampler& feet = upward.empty() ? all : upward;
-        for (std::uint32_t i = 0; i < count; ++i) {
-            const std::optional<Place> place = findPlace(grid, feet, random);
-            if (!place) break;
-            lights.push_back(makeLight(*place, random, i));
-        }
-        if (lights.size() < count)
-            scene.notes.push_back("Only " + std::to_string(lights.size()) + " of " + std::to_string(count) +
-                                  " scattered lights found a free place.");
+        const LightPlaces places(grid);
+        lights = lightsInPlaces(scene, places, count, random);
         std::vector<glm::vec3> points;
-        for (int i = 0; i < kSurfacePoints; ++i) points.push_back(all.point(random));
+        for (int i = 0; i < kSurfacePoints; ++i) points.push_back(places.surfaces().point(random).position);
         const float radius = grid.bounds().radius();
-        range = commonRange(lights, points, radius);
+        float range = commonRange(lights, points, radius);
         const TileSamples tiles = density != nullptr ? TileSamples(grid, *density) : TileSamples();
         if (!tiles.empty()) range = rangeForTiles(scene, lights, tiles, density->shadowedPerTile, radius, random);
+        finish(lights, range, random);
+        if (tiles.empty()) moveWhatShinesOnNothing(lights, places, seed);
     }
-    finish(lights, range, random);
     scene.lights.insert(scene.lights.end(), lights.begin(), lights.end());
 }
 

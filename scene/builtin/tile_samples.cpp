@@ -33,8 +33,6 @@ Ray rayThrough(const TileDensity& view, float xPx, float yPx) {
 }  // namespace
 
 TileSamples::TileSamples(const TriangleGrid& grid, const TileDensity& view) {
-    const glm::vec3 eye(view.camera.worldFromCamera[3]);
-    const float reach = glm::length(grid.bounds().centre() - eye) + grid.bounds().radius();
     const std::uint32_t across = (view.widthPx + kTilePx - 1) / kTilePx, down = (view.heightPx + kTilePx - 1) / kTilePx;
     const std::uint32_t columns = std::min(across, kMostTilesAcross), rows = std::min(down, kMostTilesAcross);
     Random random(7);
@@ -52,7 +50,7 @@ TileSamples::TileSamples(const TriangleGrid& grid, const TileDensity& view) {
         for (const float dy : kPixels) {
             for (const float dx : kPixels) {
                 const Ray ray = rayThrough(view, static_cast<float>(x) + dx, static_cast<float>(y) + dy);
-                const auto hit = grid.cast(ray.origin, ray.direction, reach);
+                const auto hit = grid.cast(ray.origin, ray.direction, std::numeric_limits<float>::infinity());
                 if (!hit) continue;
                 const TriangleGrid::Triangle& triangle = grid.triangles()[hit->triangle];
                 glm::vec3 normal(0.0f);

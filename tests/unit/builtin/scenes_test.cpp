@@ -3,6 +3,7 @@
 #include "scene/builtin/builtin.h"
 #include "scene/builtin/tile_samples.h"
 #include "scene/builtin/triangle_grid.h"
+#include "scene/bulk.h"
 
 #include <gtest/gtest.h>
 
@@ -62,6 +63,13 @@ TEST_P(BuiltinScene, HasNameMaterialCameraAndExposure) {
     EXPECT_FALSE(scene.materials.empty());
     EXPECT_FALSE(scene.cameras.empty());
     EXPECT_TRUE(scene.exposureEv100.has_value());
+}
+
+// So whatever goes by the bulk of a scene goes by all of it: where lights are scattered, for one.
+TEST_P(BuiltinScene, HasNothingFarAway) {
+    const Pose pose = restPose(scene);
+    const std::vector<Thing> things = thingsOf(scene, pose, std::vector<bool>(scene.instances.size()), false);
+    EXPECT_EQ(Bulk(things).leftOut(), 0u);
 }
 
 TEST_P(BuiltinScene, IndicesAreValid) {

@@ -130,8 +130,9 @@ void printFrame(const Session& session, const FrameResult& result) {
     printCounters(result);
     printAdvice(result);
     if (result.clippedPixels != 0)
-        fmt::print("{} pixels are brighter than {:g}, the most that the picture holds: they are clipped.\n",
-                   result.clippedPixels, renderer::kBrightest);
+        fmt::print("{} pixels are brighter than {:g}, the most that the picture holds: they are clipped{}.\n",
+                   result.clippedPixels, result.brightest,
+                   result.brightest > renderer::kBrightestHalf ? "" : " (--exr FILE --exr-type float keeps them)");
     if (!result.hash.empty()) fmt::print("Picture {}, exposed for EV100 {:.2f}.\n", result.hash, result.exposureEv100);
 }
 

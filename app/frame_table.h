@@ -12,7 +12,8 @@ struct FrameResult {
     MemoryReport library;
     std::string hash;  // of the tone-mapped picture; empty if there is none
     float exposureEv100 = 0.0f;
-    std::uint64_t clippedPixels = 0;                // brighter than the picture holds
+    float brightest = renderer::kBrightestHalf;     // that the picture holds
+    std::uint64_t clippedPixels = 0;                // as bright as that
     std::uint64_t frames = 1;                       // rendered; the report is the last one's
     std::vector<std::vector<float>> cascadeBiases;  // metres; per light of the scene, empty for those without cascades
 };

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <string>
 
+#include "app/errors.h"
+
 namespace gnomon::app {
 
 const CLI::Validator& fileName() {
@@ -19,6 +21,18 @@ std::string extensionOf(const std::string& file) {
     for (char& c : extension)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     return extension;
+}
+
+void checkExtension(const std::string& file, const std::string& extension) {
+    if (!extensionOf(file).empty()) requireExtension(file, extension);
+}
+
+void requireExtension(const std::string& file, const std::string& extension) {
+    if (file.empty() || extensionOf(file) == extension) return;
+    std::string kind = extension.substr(1);
+    for (char& c : kind) c = static_cast<char>(c - 'a' + 'A');
+    throw UsageError(fmt::format("'{}' is no name for {} {} file: it must end in {}.", file, kind == "EXR" ? "an" : "a",
+                                 kind, extension));
 }
 
 CLI::Validator numberWithin(double low, double high) {

@@ -11,6 +11,12 @@ const CLI::Validator& fileName();
 /// How the name of a file ends, in small letters: ".glb" of "Scene.GLB".
 std::string extensionOf(const std::string& file);
 
+/// Throws UsageError where a file's name does not end in `extension`, in small letters as ".png". An empty name is an
+/// option that was not given.
+void requireExtension(const std::string& file, const std::string& extension);
+/// The same, but names without any extension pass.
+void checkExtension(const std::string& file, const std::string& extension);
+
 /// As CLI::Range, which lets NaN pass.
 CLI::Validator numberWithin(double low, double high);
 

@@ -12,12 +12,14 @@
 #include "app/commands.h"
 #include "app/errors.h"
 #include "app/export_lights.h"
+#include "app/frame_files.h"
 #include "app/frame_json.h"
 #include "app/frame_table.h"
 #include "app/option_checks.h"
 #include "app/outputs.h"
 #include "app/progress.h"
 #include "app/session.h"
+#include "picture/exr.h"
 #include "renderer/frame/lights.h"
 
 namespace gnomon::app {
@@ -26,12 +28,18 @@ namespace {
 struct RenderOptions {
     Settings settings;
     std::string png, exr, statistics, lights;
+    std::string exrType = "half";
+    FrameFiles files;
     std::string shadows = "deferred";
     std::uint32_t frames = 1;
     double framesPerSecond = 30.0;
     bool sequence = false;
     std::optional<float> exposure;
 };
+
+bool floatPicture(const RenderOptions& options) {
+    return options.exrType == "float";
+}
 
 // name_0000.png
 std::string sequenceFile(const std::string& png, std::uint32_t frame) {
@@ -85,25 +93,39 @@ void writePictures(renderer::Renderer& renderer, const Session& session, const R
     const renderer::Picture picture = renderer::toneMap(linear, result.exposureEv100);
     result.hash = renderer::hashOf(picture);
     result.clippedPixels = renderer::clippedPixels(linear);
+    result.brightest = linear.brightest;
     if (!options.png.empty() && !options.sequence) renderer::writePng(picture, options.png);
-    if (!options.exr.empty()) renderer::writeExr(linear, options.exr);
+    const renderer::ExrType type = floatPicture(options) ? renderer::ExrType::Float : renderer::ExrType::Half;
+    if (!options.exr.empty()) renderer::writeExr(linear, options.exr, type);
 }
 
-void renderWithin(const renderer::VulkanInstance& instance, const RenderOptions& options) {
-    const Session session(instance, options.settings);
-    exportLights(session, options.lights,
-                 frameTime(options.settings.time, options.frames - 1, options.framesPerSecond));
-    const Stopwatch setUp;
-    renderer::Renderer renderer(session.device(), session.scene(), session.rendererDesc());
-    sayProgress(fmt::format("Set up in {:.1f} s.", setUp.seconds()));
-    FrameResult result = renderFrames(renderer, session, options);
-    writePictures(renderer, session, options, result);
-    if (!options.statistics.empty()) writeJson(describe(session, result), options.statistics);
-    printFrame(session, result);
+void printWritten(const RenderOptions& options) {
     if (options.sequence)
         fmt::print("Written: {} to {}\n", sequenceFile(options.png, 0), sequenceFile(options.png, options.frames - 1));
     else if (!options.png.empty())
         fmt::print("Written: {}\n", options.png);
+    std::vector<std::string> others = namesOf(options.files);
+    others.insert(others.begin(), {options.exr, options.lights});
+    for (const std::string& file : others)
+        if (!file.empty()) fmt::print("Written: {}\n", file);
+}
+
+void renderWithin(const renderer::VulkanInstance& instance, const RenderOptions& options) {
+    const Session session(instance, options.settings);
+    const std::vector<std::uint32_t> lights = visibilityLights(options.files, session);
+    exportLights(session, options.lights,
+                 frameTime(options.settings.time, options.frames - 1, options.framesPerSecond));
+    const Stopwatch setUp;
+    renderer::RendererDesc desc = session.rendererDesc();
+    desc.floatPicture = floatPicture(options);
+    renderer::Renderer renderer(session.device(), session.scene(), desc);
+    sayProgress(fmt::format("Set up in {:.1f} s.", setUp.seconds()));
+    FrameResult result = renderFrames(renderer, session, options);
+    writePictures(renderer, session, options, result);
+    writeFrameFiles(renderer, options.files, lights);
+    if (!options.statistics.empty()) writeJson(describe(session, result), options.statistics);
+    printFrame(session, result);
+    printWritten(options);
 }
 
 int render(const RenderOptions& options) {
@@ -112,12 +134,13 @@ int render(const RenderOptions& options) {
     rendererDescOf(options.settings);  // refuses wrong settings before anything is started
     if (options.settings.unquantised && options.shadows != "inline")
         throw UsageError("--unquantised goes with --shadows inline alone.");
-    const std::string extension = extensionOf(options.png);
-    if (!extension.empty() && extension != ".png")
-        throw UsageError(fmt::format("'{}' is no name for a PNG file: it must end in .png.", options.png));
+    checkExtension(options.png, ".png");
+    checkExtension(options.exr, ".exr");
+    requireExtension(options.lights, ".gltf");
+    checkFrameFiles(options.files, options.shadows);
     if (options.sequence && options.png.empty()) throw UsageError("--sequence needs -o NAME.png to name its files by.");
-    checkExportLights(options.lights);
-    std::vector<std::string> outputs = {options.exr, options.statistics, options.lights};
+    std::vector<std::string> outputs = namesOf(options.files);
+    outputs.insert(outputs.end(), {options.exr, options.statistics, options.lights});
     if (!options.sequence) outputs.push_back(options.png);
     for (std::uint32_t i = 0; options.sequence && i < options.frames; ++i)
         outputs.push_back(sequenceFile(options.png, i));
@@ -133,7 +156,16 @@ void addRenderCommand(CLI::App& app, Work& chosen) {
     CLI::App* command = app.add_subcommand("render", "Render a scene into a picture");
     const auto options = std::make_shared<RenderOptions>();
     command->add_option("-o,--output", options->png, "The picture, a PNG file")->check(fileName());
-    command->add_option("--exr", options->exr, "The linear picture, an EXR file")->check(fileName());
+    CLI::Option* exr = command->add_option("--exr", options->exr, "The linear picture, an EXR file");
+    exr->check(fileName());
+    command
+        ->add_option("--exr-type", options->exrType,
+                     "Numbers of the linear picture: half ends at 65504; with float the renderer's picture is of "
+                     "32-bit floats, too, and nothing is clipped")
+        ->check(CLI::IsMember({"half", "float"}))
+        ->needs(exr)
+        ->capture_default_str();
+    addFrameFiles(*command, options->files);
     command->add_option("--stats", options->statistics, "Times, memory and counters, a JSON file")->check(fileName());
     addExportLights(*command, options->lights);
     command->add_option("--shadows", options->shadows, "How lights are shadowed")

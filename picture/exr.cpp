@@ -1,61 +1,75 @@
+#include "picture/exr.h"
+
 #include <fmt/format.h>
 #include <tinyexr.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <memory>
 #include <span>
 #include <stdexcept>
 
 #include "picture/files.h"
-#include "picture/picture.h"
 
 namespace gnomon::renderer {
 namespace {
 
-constexpr int kChannels = 4;
-constexpr std::array<char, kChannels> kChannelNames = {'A', 'B', 'G', 'R'};  // EXR wants them in alphabetical order
+constexpr std::size_t kRgba = 4;
+constexpr std::array<const char*, kRgba> kRgbaNames = {"A", "B", "G", "R"};  // EXR wants them in alphabetical order
 
-std::array<std::vector<float>, kChannels> planesOf(const HdrPicture& picture) {
-    std::array<std::vector<float>, kChannels> planes;
-    const std::size_t pixels = std::size_t{picture.width} * picture.height;
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        planes[c].resize(pixels);
-        for (std::size_t i = 0; i < pixels; ++i) {
-            const float value = picture.rgba[kChannels * i + (kChannels - 1 - c)];
-            planes[c][i] = std::isnan(value) ? value : std::clamp(value, -kBrightest, kBrightest);
-        }
-    }
-    return planes;
+float withinHalf(float value) {
+    return std::isnan(value) ? value : std::clamp(value, -kBrightestHalf, kBrightestHalf);
 }
 
-}  // namespace
-
-void writeExr(const HdrPicture& picture, const std::filesystem::path& file) {
-    std::array<std::vector<float>, kChannels> planes = planesOf(picture);
-    std::array<unsigned char*, kChannels> pointers{};
-    std::array<EXRChannelInfo, kChannels> channels{};
-    std::array<int, kChannels> given{}, wanted{};
-    for (std::size_t c = 0; c < kChannels; ++c) {
-        pointers[c] = reinterpret_cast<unsigned char*>(planes[c].data());
-        channels[c].name[0] = kChannelNames[c];
-        given[c] = TINYEXR_PIXELTYPE_FLOAT;
-        wanted[c] = TINYEXR_PIXELTYPE_HALF;
+ExrPicture channelsOf(const HdrPicture& picture, ExrType type) {
+    ExrPicture out{picture.width, picture.height, {}};
+    const std::size_t pixels = std::size_t{picture.width} * picture.height;
+    for (std::size_t c = 0; c < kRgba; ++c) {
+        std::vector<float> values(pixels);
+        for (std::size_t i = 0; i < pixels; ++i) {
+            const float value = picture.rgba[kRgba * i + (kRgba - 1 - c)];
+            values[i] = type == ExrType::Half ? withinHalf(value) : value;
+        }
+        out.channels.push_back({kRgbaNames[c], std::move(values), {}});
     }
+    return out;
+}
+
+std::vector<const ExrChannel*> inOrder(const ExrPicture& picture) {
+    std::vector<const ExrChannel*> sorted;
+    for (const ExrChannel& channel : picture.channels) sorted.push_back(&channel);
+    std::ranges::sort(sorted, {}, [](const ExrChannel* channel) { return channel->name; });
+    return sorted;
+}
+
+EXRChannelInfo namedChannel(const std::string& name) {
+    EXRChannelInfo info{};
+    std::copy_n(name.begin(), std::min(name.size(), std::size(info.name) - 1), info.name);
+    return info;
+}
+
+void encode(const ExrPicture& picture, const std::filesystem::path& file, ExrType type) {
+    std::vector<unsigned char*> pointers;
+    std::vector<EXRChannelInfo> channels;
+    for (const ExrChannel* channel : inOrder(picture)) {
+        // It is read alone; the interface of tinyexr has no const.
+        pointers.push_back(reinterpret_cast<unsigned char*>(const_cast<float*>(channel->values.data())));
+        channels.push_back(namedChannel(channel->name));
+    }
+    std::vector<int> given(channels.size(), TINYEXR_PIXELTYPE_FLOAT);
+    std::vector<int> wanted(channels.size(), type == ExrType::Half ? TINYEXR_PIXELTYPE_HALF : TINYEXR_PIXELTYPE_FLOAT);
     EXRHeader header;
     InitEXRHeader(&header);
-    header.num_channels = kChannels;
+    header.num_channels = static_cast<int>(channels.size());
     header.channels = channels.data();
     header.pixel_types = given.data();
     header.requested_pixel_types = wanted.data();
     header.compression_type = TINYEXR_COMPRESSIONTYPE_ZIP;
     EXRImage image;
     InitEXRImage(&image);
-    image.num_channels = kChannels;
+    image.num_channels = header.num_channels;
     image.images = pointers.data();
     image.width = static_cast<int>(picture.width);
     image.height = static_cast<int>(picture.height);
@@ -67,6 +81,16 @@ void writeExr(const HdrPicture& picture, const std::filesystem::path& file) {
     if (error != nullptr) FreeEXRErrorMessage(error);
     if (size == 0) throw std::runtime_error(fmt::format("'{}' could not be encoded as EXR.", file.string()));
     replaceFile(file, std::span<const std::uint8_t>(encoded, size));
+}
+
+}  // namespace
+
+void writeExr(const HdrPicture& picture, const std::filesystem::path& file, ExrType type) {
+    encode(channelsOf(picture, type), file, type);
+}
+
+void writeExr(const ExrPicture& picture, const std::filesystem::path& file) {
+    encode(picture, file, ExrType::Float);
 }
 
 }  // namespace gnomon::renderer

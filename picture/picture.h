@@ -1,5 +1,5 @@
 #pragma once
-// Pictures on the CPU: exposure, tone mapping, PNG and EXR files, a hash, comparison.
+// Pictures on the CPU: exposure, tone mapping, PNG files, a hash, comparison. EXR files: picture/exr.h.
 
 #include <cstdint>
 #include <filesystem>
@@ -9,15 +9,17 @@
 
 namespace gnomon::renderer {
 
+/// The brightest radiance that a picture of half floats holds.
+inline constexpr float kBrightestHalf = 65504.0f;
+
 /// Linear Rec. 709, RGBA, rows from the top. Alpha is 0 where there is no geometry, else 1.
 struct HdrPicture {
     std::uint32_t width = 0, height = 0;
     std::vector<float> rgba;
+    float brightest = kBrightestHalf;  ///< what a channel holds at most, where the picture comes from
 };
 
-/// The brightest radiance that a renderer's picture of half floats holds.
-inline constexpr float kBrightest = 65504.0f;
-/// Pixels of which a channel is as bright as that, so that it may have been brighter.
+/// Pixels of which a channel is as bright as the picture holds, so that it may have been brighter.
 std::uint64_t clippedPixels(const HdrPicture& picture);
 
 /// sRGB, RGB, rows from the top.
@@ -39,9 +41,8 @@ Picture toneMap(const HdrPicture& picture, float exposureEv100);
 /// Leaves an existing file as it is.
 void checkWritable(const std::filesystem::path& file);
 
-/// Throw std::runtime_error with one sentence where the file cannot be written. An existing file is replaced at once.
+/// Throws std::runtime_error with one sentence where the file cannot be written. An existing file is replaced at once.
 void writePng(const Picture& picture, const std::filesystem::path& file);
-void writeExr(const HdrPicture& picture, const std::filesystem::path& file);  ///< linear, 16-bit half
 /// Throws std::runtime_error with one sentence where the file cannot be read.
 Picture readPng(const std::filesystem::path& file);
 

@@ -37,7 +37,7 @@ std::uint8_t encodeSrgb(float linear) {
 std::uint64_t clippedPixels(const HdrPicture& picture) {
     std::uint64_t count = 0;
     for (std::size_t i = 0; i + 4 <= picture.rgba.size(); i += 4)
-        count += std::max({picture.rgba[i], picture.rgba[i + 1], picture.rgba[i + 2]}) >= kBrightest ? 1 : 0;
+        count += std::max({picture.rgba[i], picture.rgba[i + 1], picture.rgba[i + 2]}) >= picture.brightest ? 1 : 0;
     return count;
 }
 

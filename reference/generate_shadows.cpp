@@ -30,9 +30,9 @@ Visibility sampleView(const LightModel& light, std::size_t which, const Pixel& p
                       bool faces, std::span<const DiskDirection> directions) {
     const auto views = std::span(input.views).subspan(light.firstShadowView, light.viewCount());
     const ShadowViewModel& view = views[which];
-    Bias bias;
-    if (input.bias != BiasMode::Unbiased)
-        bias = {light.biasMetres, pixel.subsurface ? input.subsurfaceBiasMetres : 0.0};
+    const Bias bias = {.metres = light.biasMetres,
+                       .leastMetres = pixel.subsurface ? input.subsurfaceBiasMetres : 0.0,
+                       .none = input.bias == BiasMode::Unbiased};
     const DepthMode mode = input.bias == BiasMode::Oriented ? DepthMode::Plane : DepthMode::Constant;
     const ReceiverInView receiver = receiverIn(view, pixel, mode, bias, faces || pixel.subsurface);
     if (receiver.unknown) return kAny;

@@ -22,6 +22,7 @@ Interval biasedDepth(const ShadowViewModel& view, Interval linearDepth, Interval
 }
 
 Interval limitedBias(const ShadowViewModel& view, Interval linearDepth, const Bias& bias) {
+    if (bias.none) return 0.0;
     const Interval reach = view.orthographic ? Interval(1.0) : max(linearDepth, 0.0);
     const Interval most = rounded(view.mostBias) * reach, least = rounded(view.leastBias) * reach;
     return max(min(max(rounded(bias.metres), least), most), rounded(bias.leastMetres));

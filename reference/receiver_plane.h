@@ -43,9 +43,10 @@ struct ReceiverInView {
     bool unknown = false;      ///< anything may come out
     std::vector<ReceiverPlane> planes;
 };
-/// What the light's bias and the view's limit to it allow, but `leastMetres` at least.
+/// What the light's bias and the view's limits to it allow, but `leastMetres` at least. `none`: nothing of all that.
 struct Bias {
     double metres = 0.0, leastMetres = 0.0;
+    bool none = false;
 };
 /// The bias, and with it the slack, is toward the light or away from it.
 ReceiverInView receiverIn(const ShadowViewModel& view, const Pixel& pixel, DepthMode mode, const Bias& bias,

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
-#include <glm/gtc/packing.hpp>
 #include <utility>
 
 #include "renderer/frame/camera.h"
 #include "renderer/frame/frame.h"
 #include "renderer/frame/lights.h"
+#include "renderer/frame/readback.h"
 #include "renderer/frame/shadowmaps.h"
 #include "renderer/gbuffer/gbuffer.h"
 #include "renderer/gpu/error.h"
@@ -93,6 +92,7 @@ struct Renderer::State {
     ShadowPlan lastPlan;
     ShadowSettings lastShadows;
     VkExtent2D lastExtent{};
+    Camera lastCamera;
     glm::dvec3 lastOrigin{0.0};
     std::uint64_t frameNumber = 0;
     std::uint32_t resizes = 0;
@@ -113,7 +113,7 @@ struct Renderer::State {
           gbuffer(d, scene, r.frame.widthPx, r.frame.heightPx),
           planner(planSettingsOf(d, r)),
           shadowmaps(d, pipelines->context(), scene, r, planner.settings().atlasSizePx, kFramesInFlight),
-          lighting(d, pipelines->lighting(), s, gbuffer),
+          lighting(d, pipelines->lighting(), s, gbuffer, r.floatPicture ? PictureFormat::Float : PictureFormat::Half),
           commands{Commands(d), Commands(d)} {
         std::ranges::transform(sceneLights, std::back_inserter(shadowLights), shadowLightOf);
         takePose();
@@ -153,17 +153,18 @@ void Renderer::prepare(ShadowMode mode) {
     State& s = *state_;
     const ShadowSettings shadows = librarySettings(s.sceneLights, s.settings);
     LightingPipelines& lighting = s.pipelines->lighting();
+    const PictureFormat format = s.lighting.format();
     require(s.pipelines->context().prepare(shadows));
     switch (mode) {
         case ShadowMode::Deferred:
-            lighting.get(LightingKind::Deferred, shadows);
-            lighting.get(LightingKind::Evaluate, shadows);
+            lighting.get(LightingKind::Deferred, shadows, {}, format);
+            lighting.get(LightingKind::Evaluate, shadows, {}, format);
             break;
         case ShadowMode::Inline:
-            lighting.get(LightingKind::Inline, shadows, s.settings.inlineVariant);
+            lighting.get(LightingKind::Inline, shadows, s.settings.inlineVariant, format);
             break;
         case ShadowMode::Off:
-            lighting.get(LightingKind::Unshadowed, shadows, s.settings.inlineVariant);
+            lighting.get(LightingKind::Unshadowed, shadows, s.settings.inlineVariant, format);
             break;
     }
 }
@@ -282,6 +283,7 @@ std::uint64_t Renderer::renderFrame(const SceneCamera& cameraAtRest, ShadowMode 
     s.lastOrigin = origin;
     s.lastShadows = shadows;
     s.lastExtent = view.extent;
+    s.lastCamera = camera;
     ++s.frameNumber;
     return number;
 }
@@ -303,36 +305,26 @@ FrameReport Renderer::report(std::uint64_t frameNumber) const {
 }
 
 HdrPicture Renderer::readPicture() {
-    State& s = *state_;
     wait();
-    const GpuImage& image = s.lighting.picture();
-    const std::vector<std::uint8_t> bytes = readImage(s.device, image, VK_IMAGE_LAYOUT_GENERAL);
-    HdrPicture picture;
-    picture.width = s.lastExtent.width;
-    picture.height = s.lastExtent.height;
-    picture.rgba.resize(std::size_t(picture.width) * picture.height * 4);
-    for (std::size_t y = 0, i = 0; y < picture.height; ++y) {
-        const std::uint8_t* row = bytes.data() + y * image.desc().width * 8;
-        for (std::size_t x = 0; x < std::size_t{4} * picture.width; ++x) {
-            std::uint16_t half;
-            std::memcpy(&half, row + 2 * x, 2);
-            picture.rgba[i++] = glm::unpackHalf1x16(half);
-        }
-    }
-    return picture;
+    return pictureIn(state_->device, state_->lighting.picture(), state_->lastExtent);
 }
 
 std::vector<std::uint32_t> Renderer::readTriangleIds() {
     State& s = *state_;
     wait();
-    const GpuImage& image = s.gbuffer.image(GBuffer::TriangleId);
-    const std::vector<std::uint8_t> bytes = readImage(s.device, image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    std::vector<std::uint32_t> ids(std::size_t{s.lastExtent.width} * s.lastExtent.height);
-    for (std::size_t y = 0; y < s.lastExtent.height; ++y)
-        std::memcpy(&ids[y * s.lastExtent.width], bytes.data() + y * image.desc().width * 4,
-                    std::size_t{4} * s.lastExtent.width);
+    std::vector<std::uint32_t> ids = triangleIdsIn(s.device, s.gbuffer, s.lastExtent);
     for (std::uint32_t& id : ids) id = s.scene.trianglePosition(id);
     return ids;
+}
+
+std::vector<float> Renderer::readDepth() {
+    wait();
+    return depthsIn(state_->device, state_->gbuffer, state_->lastExtent, state_->lastCamera);
+}
+
+std::vector<glm::vec3> Renderer::readNormals() {
+    wait();
+    return normalsIn(state_->device, state_->gbuffer, state_->lastExtent);
 }
 
 std::vector<float> Renderer::readVisibility(std::uint32_t light) {

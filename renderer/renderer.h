@@ -66,7 +66,15 @@ public:
     [[nodiscard]] FrameReport report(std::uint64_t frameNumber) const;
 
     // Of the last frame, by its extent. All of them wait.
-    HdrPicture readPicture();  ///< linear
+    HdrPicture readPicture();  ///< linear; of halves or floats, as RendererDesc::floatPicture has it
+    /// Per pixel the distance along the view axis from the camera, in the scene's units (metres): that of the plane
+    /// across the axis in which the point lies, not the length of the ray. Infinity at background. As exact as the
+    /// depth buffer: to 1e-6 of the distance for perspective cameras with reversed Z, of the far plane's for
+    /// orthographic ones.
+    std::vector<float> readDepth();
+    /// Per pixel the shading normal in world space, unit, normal map included, on the side that the camera sees. Exact
+    /// to 0.0001. Zero at background.
+    std::vector<glm::vec3> readNormals();
     /// Per pixel the triangle's position among all instances' triangles in the scene's order, kNone at background.
     std::vector<std::uint32_t> readTriangleIds();
     /// Per pixel the visibility of a light of the scene; the frame must have been ShadowMode::Deferred. -1 where the

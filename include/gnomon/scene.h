@@ -99,7 +99,7 @@ struct ShadowView {
     DeviceDepth deviceDepth = DeviceDepth::ReversedZ;
     /// Limit Light::biasMetres by what this view sees. Perspective: shares of the receiver's distance along the view's
     /// axis. Orthographic: metres. 0 <= least <= most. As they are, the light's bias is taken as it is. The reference
-    /// renderer gives a five-hundredth and a fifty-thousandth, and of a cascade these shares of half its width. So 2 mm
+    /// renderer gives a five-hundredth and a ten-thousandth, and of a cascade these shares of half its width. So 2 mm
     /// are never much, however small the scene is, and never less than what rasterizers round, however large.
     float mostBias = std::numeric_limits<float>::infinity();
     float leastBias = 0.0f;

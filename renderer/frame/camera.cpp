@@ -76,4 +76,11 @@ Camera cameraOf(const SceneCamera& given, const glm::dvec3& origin, std::uint32_
     return result;
 }
 
+double axisDistanceOf(const Camera& camera, float deviceDepth) {
+    const float* m = camera.clipFromView;
+    // d = (zScale * z + zShift) / (wScale * z + wShift), with z along the view's own axis, which points back.
+    const double zScale = m[10], zShift = m[14], wScale = m[11], wShift = m[15], d = deviceDepth;
+    return -(zShift - d * wShift) / (d * wScale - zScale);
+}
+
 }  // namespace gnomon::renderer

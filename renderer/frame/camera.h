@@ -17,4 +17,8 @@ glm::dvec3 frameOriginOf(const SceneCamera& camera);
 Camera cameraOf(const SceneCamera& camera, const glm::dvec3& origin, std::uint32_t widthPx, std::uint32_t heightPx,
                 DeviceDepth depth);
 
+/// How far along the view axis that lies which has this device depth, for a camera by cameraOf(): the inverse of its
+/// projection, in double.
+double axisDistanceOf(const Camera& camera, float deviceDepth);
+
 }  // namespace gnomon::renderer

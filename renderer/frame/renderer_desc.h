@@ -18,6 +18,8 @@ struct RendererDesc {
     /// How many ways of drawing shadowmaps (FrameSettings::drawing) keep an atlas and a View of their own. A further
     /// way takes those that were unused for longest. More than one is for measurements that go to and fro.
     std::uint32_t keptDrawings = 1;
+    /// The picture holds 32-bit floats. Off: halves, which end at 65504, in half the memory. Brighter light is cut.
+    bool floatPicture = false;
 };
 
 }  // namespace gnomon::renderer

@@ -5,6 +5,8 @@
 //   GNOMON_EVALUATE  its second pipeline, for tiles in which a slot or list space was missing; dispatched indirectly.
 //   GNOMON_INLINE    the paper's "before": the same early lists, the same filters, shadows evaluated right here.
 //
+// Each once more with GNOMON_FLOAT_PICTURE, for pictures of 32-bit floats.
+//
 // Source: the paper, section 2, and table 1 for the comparison.
 #extension GL_GOOGLE_include_directive : require
 #include "renderer/lighting/shade.glsl"
@@ -117,5 +119,5 @@ void main() {
     vec3 radiance = shadeLights(surface, receiver, pixel);
 #endif
     radiance += ambient(surface);
-    imageStore(picture, ivec2(pixel), vec4(min(radiance, vec3(65504.0)), 1.0));
+    imageStore(picture, ivec2(pixel), vec4(min(radiance, vec3(kBrightest)), 1.0));
 }

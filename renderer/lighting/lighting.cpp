@@ -43,8 +43,9 @@ std::span<const std::byte> bytesOf(const std::vector<T>& values) {
 
 }  // namespace
 
-Lighting::Lighting(const Device& device, LightingPipelines& pipelines, const Scene& scene, const GBuffer& gbuffer)
-    : device_(device), pipelines_(pipelines) {
+Lighting::Lighting(const Device& device, LightingPipelines& pipelines, const Scene& scene, const GBuffer& gbuffer,
+                   PictureFormat format)
+    : device_(device), pipelines_(pipelines), format_(format) {
     std::vector<HostLight> lights(std::max<std::size_t>(scene.lights.size(), 1));
     std::transform(scene.lights.begin(), scene.lights.end(), lights.begin(), hostLightOf);
     hostLights_ = Buffer(device, "host_lights", lights.size() * sizeof(HostLight),
@@ -65,9 +66,10 @@ Lighting::Lighting(const Device& device, LightingPipelines& pipelines, const Sce
 
 void Lighting::resize(const GBuffer& gbuffer) {
     const VkExtent2D extent = gbuffer.extent();
+    const bool floats = format_ == PictureFormat::Float;
     picture_ = GpuImage(
         device_, {.name = "picture",
-                  .format = VK_FORMAT_R16G16B16A16_SFLOAT,
+                  .format = floats ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R16G16B16A16_SFLOAT,
                   .width = extent.width,
                   .height = extent.height,
                   .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
@@ -110,8 +112,8 @@ void Lighting::recordDeferred(VkCommandBuffer commands, const View& view, const 
                               Timeline* timeline) {
     beginPicture(commands);
     const VkExtent2D tiles = view.tileCounts();
-    const VkPipeline main = pipelines_.get(LightingKind::Deferred, settings);
-    const VkPipeline evaluate = pipelines_.get(LightingKind::Evaluate, settings);
+    const VkPipeline main = pipelines_.get(LightingKind::Deferred, settings, {}, format_);
+    const VkPipeline evaluate = pipelines_.get(LightingKind::Evaluate, settings, {}, format_);
     {
         const TimelineScope scope(device_, timeline, commands, "lighting", Phase::Lighting, RowKind::Compute);
         bind(commands, view, LightingKind::Deferred, main);
@@ -126,7 +128,7 @@ void Lighting::recordInline(VkCommandBuffer commands, const View& view, Lighting
                             const ShadowSettings& settings, const InlineVariant& variant, Timeline* timeline) {
     beginPicture(commands);
     const VkExtent2D tiles = view.tileCounts();
-    const VkPipeline pipeline = pipelines_.get(kind, settings, variant);
+    const VkPipeline pipeline = pipelines_.get(kind, settings, variant, format_);
     const char* name = kind == LightingKind::Inline ? "lighting_inline" : "lighting_unshadowed";
     const TimelineScope scope(device_, timeline, commands, name, Phase::Lighting, RowKind::Compute);
     bind(commands, view, kind, pipeline);

@@ -12,11 +12,12 @@
 
 namespace gnomon::renderer {
 
-/// Writes a linear R16G16B16A16_SFLOAT picture of the G-buffer's extent. Not thread safe.
+/// Writes a linear picture of the G-buffer's extent: R16G16B16A16_SFLOAT or R32G32B32A32_SFLOAT. Not thread safe.
 class Lighting {
 public:
     /// Uploads the scene's light data. The pipelines must outlive this. Throws GpuError.
-    Lighting(const Device& device, LightingPipelines& pipelines, const Scene& scene, const GBuffer& gbuffer);
+    Lighting(const Device& device, LightingPipelines& pipelines, const Scene& scene, const GBuffer& gbuffer,
+             PictureFormat format = PictureFormat::Half);
     /// After the G-buffer was resized; the device must have finished with the old picture.
     void resize(const GBuffer& gbuffer);
 
@@ -29,6 +30,7 @@ public:
 
     /// In GENERAL between frames.
     [[nodiscard]] const GpuImage& picture() const { return picture_; }
+    [[nodiscard]] PictureFormat format() const { return format_; }
     [[nodiscard]] std::vector<MemoryRow> memoryRows() const;
 
 private:
@@ -38,6 +40,7 @@ private:
 
     const Device& device_;
     LightingPipelines& pipelines_;
+    PictureFormat format_;
     GpuImage picture_;
     Buffer hostLights_, sceneConstants_;
     DescriptorPool pool_;

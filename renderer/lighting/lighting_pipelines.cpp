@@ -17,6 +17,15 @@ constexpr std::uint32_t kEvaluateSpirv[] = {
 constexpr std::uint32_t kInlineSpirv[] = {
 #include "lighting_inline.spv.h"
 };
+constexpr std::uint32_t kDeferredFloatSpirv[] = {
+#include "lighting_deferred_float.spv.h"
+};
+constexpr std::uint32_t kEvaluateFloatSpirv[] = {
+#include "lighting_evaluate_float.spv.h"
+};
+constexpr std::uint32_t kInlineFloatSpirv[] = {
+#include "lighting_inline_float.spv.h"
+};
 
 // What a kind's shader does not look at is the same for all settings.
 SpecializationValues valuesOf(LightingKind kind, const Context& context, const ShadowSettings& settings) {
@@ -32,17 +41,19 @@ SpecializationValues valuesOf(LightingKind kind, const Context& context, const S
     return out;
 }
 
-std::span<const std::uint32_t> spirvOf(LightingKind kind) {
+std::span<const std::uint32_t> spirvOf(LightingKind kind, PictureFormat format) {
+    using Spirv = std::span<const std::uint32_t>;
+    const bool floats = format == PictureFormat::Float;
     switch (kind) {
         case LightingKind::Deferred:
-            return kDeferredSpirv;
+            return floats ? Spirv(kDeferredFloatSpirv) : Spirv(kDeferredSpirv);
         case LightingKind::Evaluate:
-            return kEvaluateSpirv;
+            return floats ? Spirv(kEvaluateFloatSpirv) : Spirv(kEvaluateSpirv);
         case LightingKind::Inline:
         case LightingKind::Unshadowed:
             break;
     }
-    return kInlineSpirv;
+    return floats ? Spirv(kInlineFloatSpirv) : Spirv(kInlineSpirv);
 }
 
 }  // namespace
@@ -64,15 +75,16 @@ LightingPipelines::LightingPipelines(const Device& device, const Context& contex
     evaluateLayout_ = makePipelineLayout(device, withShadowmaps);
 }
 
-VkPipeline LightingPipelines::get(LightingKind kind, const ShadowSettings& settings, const InlineVariant& variant) {
+VkPipeline LightingPipelines::get(LightingKind kind, const ShadowSettings& settings, const InlineVariant& variant,
+                                  PictureFormat format) {
     std::vector<std::uint32_t> constants(gpu::kSpecFirstFree + 2, 0u);
     std::ranges::copy(valuesOf(kind, context_, settings).values, constants.begin());
     const bool inlined = kind == LightingKind::Inline || kind == LightingKind::Unshadowed;
     constants[gpu::kSpecFirstFree] = inlined && variant.quantises ? 1u : 0u;
     constants[gpu::kSpecFirstFree + 1] = inlined && variant.walksMasks ? 1u : 0u;
-    Pipeline& pipeline = pipelines_[{kind, constants}];
+    Pipeline& pipeline = pipelines_[{kind, format, constants}];
     if (pipeline == VK_NULL_HANDLE)
-        pipeline = makeComputePipeline(device_, spirvOf(kind), layoutOf(kind), constants,
+        pipeline = makeComputePipeline(device_, spirvOf(kind, format), layoutOf(kind), constants,
                                        requiredSubgroupSize(device_, context_));
     return pipeline;
 }

@@ -2,8 +2,9 @@
 // The lighting pipelines and their layouts, apart from the images they work on. So they can also be made, and looked
 // at, on a device that can only compile.
 
+#include <compare>
 #include <map>
-#include <tuple>
+#include <vector>
 
 #include "gnomon/context.h"
 #include "renderer/gpu/pipeline.h"
@@ -23,6 +24,9 @@ enum class LightingKind : std::uint8_t {
     Unshadowed,  ///< every light lit
 };
 
+/// What the picture's channels are.
+enum class PictureFormat : std::uint8_t { Half, Float };
+
 /// How the inline pipeline is compiled.
 struct InlineVariant {
     bool quantises = true;  ///< visibility has the bits of a slot; off: to measure what they cost
@@ -39,7 +43,8 @@ public:
     LightingPipelines(const Device& device, const Context& context);
 
     /// Throws GpuError.
-    VkPipeline get(LightingKind kind, const ShadowSettings& settings, const InlineVariant& variant = {});
+    VkPipeline get(LightingKind kind, const ShadowSettings& settings, const InlineVariant& variant = {},
+                   PictureFormat format = PictureFormat::Half);
     [[nodiscard]] VkPipelineLayout layoutOf(LightingKind kind) const {
         return kind == LightingKind::Deferred ? mainLayout_ : evaluateLayout_;
     }
@@ -52,7 +57,12 @@ private:
     SetLayout ownSet_, emptySet_;
     PipelineLayout mainLayout_;      // without the set of the shadowmaps
     PipelineLayout evaluateLayout_;  // with it
-    using Key = std::tuple<LightingKind, std::vector<std::uint32_t>>;
+    struct Key {
+        LightingKind kind;
+        PictureFormat format;
+        std::vector<std::uint32_t> constants;
+        auto operator<=>(const Key&) const = default;
+    };
     std::map<Key, Pipeline> pipelines_;
 };
 

@@ -1,6 +1,5 @@
 // What the program draws: time, soft shadows, small pools, validation.
 
-#include <bit>
 #include <fstream>
 
 #include "picture/picture.h"
@@ -16,16 +15,10 @@ class Rendering : public Program {};
 // A triangle that slides three metres to the right within a second; `reach` in place of the three.
 std::string slidingTriangle(float reach) {
     const float numbers[17] = {-1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 1, 0, 0, 0, reach, 0, 0};
-    std::string bytes;  // percent-encoded
-    for (float number : numbers)
-        for (std::uint32_t bits = std::bit_cast<std::uint32_t>(number), i = 0; i < 4; ++i, bits >>= 8) {
-            bytes += '%';
-            for (std::uint32_t digit : {bits >> 4 & 15u, bits & 15u}) bytes += "0123456789abcdef"[digit];
-        }
     return R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],)"
            R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
-           R"("buffers":[{"byteLength":68,"uri":"data:application/octet-stream,)" +
-           bytes +
+           R"("buffers":[{"byteLength":68,"uri":")" +
+           dataUri(numbers) +
            R"("}],"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":8},)"
            R"({"buffer":0,"byteOffset":44,"byteLength":24}],"accessors":[)"
            R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"

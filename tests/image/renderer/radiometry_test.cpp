@@ -19,6 +19,8 @@ constexpr double kPi = 3.14159265358979;
 View3d lampOverPlane(const SceneLight& lamp, float eyeMetres) {
     View3d view = builtin("empty-plane");
     view.scene.lights = {lamp};
+    // A level of the G-buffer's eight bits, and not between two, where devices round as they like.
+    for (Material& material : view.scene.materials) material.baseColour = glm::vec4(glm::vec3(0.50289f), 1.0f);
     view.scene.skyColour = view.scene.groundColour = glm::vec3(0.0f);
     view.camera.worldFromCamera =
         glm::inverse(glm::lookAt(glm::vec3(0, eyeMetres, 0), glm::vec3(0), glm::vec3(0, 0, -1)));

@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -28,6 +29,16 @@ Outcome runProgram(const std::filesystem::path& folder, const std::string& argum
 bool isOneSentence(const std::string& text) {
     return text.starts_with("gnomon: ") && text.ends_with(".\n") && std::count(text.begin(), text.end(), '\n') == 1 &&
            text.find(". ") == std::string::npos;
+}
+
+std::string dataUri(std::span<const float> numbers) {
+    std::string uri = "data:application/octet-stream,";  // percent-encoded
+    for (const float number : numbers)
+        for (std::uint32_t bits = std::bit_cast<std::uint32_t>(number), i = 0; i < 4; ++i, bits >>= 8) {
+            uri += '%';
+            for (const std::uint32_t digit : {bits >> 4 & 15u, bits & 15u}) uri += "0123456789abcdef"[digit];
+        }
+    return uri;
 }
 
 void Program::SetUp() {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 
 namespace gnomon::app {
@@ -19,6 +20,9 @@ Outcome runProgram(const std::filesystem::path& folder, const std::string& argum
 
 /// True for one line that starts with "gnomon: " and ends in one full stop.
 bool isOneSentence(const std::string& text);
+
+/// The bytes of floats as a data URI, for buffers of glTF files.
+std::string dataUri(std::span<const float> numbers);
 
 /// Each test runs the program in a folder of its own.
 class Program : public testing::Test {

@@ -270,7 +270,8 @@ TEST(ShaderInterface, AllShadersAreSeen) {
     for (const ShaderLayout& shader : libraryAndLighting()) names.push_back(shader.name);
     for (const char* name :
          {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "shadow_bounds", "generate_shadows",
-          "gather_statistics", "lighting_deferred", "lighting_evaluate", "lighting_inline"}) {
+          "gather_statistics", "lighting_deferred", "lighting_evaluate", "lighting_inline", "lighting_deferred_float",
+          "lighting_evaluate_float", "lighting_inline_float"}) {
         EXPECT_NE(std::ranges::find(names, name), names.end()) << name;
     }
 }
@@ -390,11 +391,14 @@ std::size_t resourcesIn(const ShaderLayout& shader, std::uint32_t set) {
 
 // The registers that the technique saves are saved only if the main lighting pipeline cannot sample a shadowmap.
 TEST(ShaderInterface, MainLightingSeesNoShadowmap) {
-    const std::optional<ShaderLayout> deferred = shaderNamed("lighting_deferred");
-    ASSERT_TRUE(deferred);
-    EXPECT_EQ(resourcesIn(*deferred, kSetShadowmaps), 0u);
-    EXPECT_GT(resourcesIn(*deferred, kSetLists), 0u);
-    for (const char* name : {"lighting_evaluate", "lighting_inline", "generate_shadows"}) {
+    for (const char* name : {"lighting_deferred", "lighting_deferred_float"}) {
+        const std::optional<ShaderLayout> deferred = shaderNamed(name);
+        ASSERT_TRUE(deferred) << name;
+        EXPECT_EQ(resourcesIn(*deferred, kSetShadowmaps), 0u) << name;
+        EXPECT_GT(resourcesIn(*deferred, kSetLists), 0u) << name;
+    }
+    for (const char* name : {"lighting_evaluate", "lighting_inline", "lighting_evaluate_float", "lighting_inline_float",
+                             "generate_shadows"}) {
         const std::optional<ShaderLayout> shader = shaderNamed(name);
         ASSERT_TRUE(shader) << name;
         EXPECT_EQ(resourcesIn(*shader, kSetShadowmaps), kShadowmapsBindingCount) << name;

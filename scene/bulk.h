@@ -5,8 +5,7 @@
 // Here: medians over triangles, then whatever is not far joins.
 //
 //     weights   a triangle's area, but at most 256 times the median one, and at most a sixth of all: neither a fine
-//     bulb
-//               in a room, nor a coarse plate under a town, nor a broken vertex has more to say than the rest
+//               bulb in a room, nor a coarse plate under a town, nor a broken vertex has more to say than the rest
 //     middle    m = weighted median of the centres, per axis
 //     reach     R = weighted median of how far they reach from m
 //     joins     what comes nearer to m than 4 R, and is not longer than 64 R. Then R is as far as that reaches, and so
@@ -18,8 +17,8 @@
 //     a sky     is around the middle of what is less than 0.6 times its size, and all of it is beyond R. Either it is
 //               beyond 4 R, and its farthest point no farther than 4 times its nearest; or it is round, so that this is
 //               1.4 times, which no room is
-//     a plate   is flat, longer than 64 R of what is less than a quarter of its size, and has no more triangles than
-//     that
+//     a plate   is flat, longer than 64 R of what is less than a quarter of its size, and has no more triangles
+//               than that
 //
 // Medians take 2^12 triangles. Limit: a sky of many triangles within the same primitive as all the rest is the bulk.
 

@@ -22,11 +22,6 @@ void addExportLights(CLI::App& command, std::string& file) {
         ->check(fileName());
 }
 
-void checkExportLights(const std::string& file) {
-    if (!file.empty() && extensionOf(file) != ".gltf")
-        throw UsageError(fmt::format("'{}' is no name for exported lights: it must end in .gltf.", file));
-}
-
 void exportLights(const Session& session, const std::string& file, double timeSeconds) {
     if (file.empty()) return;
     const std::vector<std::uint32_t>& only = session.settings().onlyLights;

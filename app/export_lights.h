@@ -11,11 +11,8 @@ class App;
 
 namespace gnomon::app {
 
-/// Sets `file`, which stays empty without the option.
+/// Sets `file`, which stays empty without the option. Its name must end in .gltf.
 void addExportLights(CLI::App& command, std::string& file);
-
-/// Throws UsageError where the file's name does not end in .gltf.
-void checkExportLights(const std::string& file);
 
 /// Every light that shines at that time, scattered ones too; nothing for an empty name. Throws UsageError where no
 /// light shines.

@@ -105,7 +105,7 @@ void printWritten(const RenderOptions& options) {
     else if (!options.png.empty())
         fmt::print("Written: {}\n", options.png);
     std::vector<std::string> others = namesOf(options.files);
-    others.insert(others.begin(), options.exr);
+    others.insert(others.begin(), {options.exr, options.lights});
     for (const std::string& file : others)
         if (!file.empty()) fmt::print("Written: {}\n", file);
 }
@@ -136,9 +136,9 @@ int render(const RenderOptions& options) {
         throw UsageError("--unquantised goes with --shadows inline alone.");
     checkExtension(options.png, ".png");
     checkExtension(options.exr, ".exr");
+    requireExtension(options.lights, ".gltf");
     checkFrameFiles(options.files, options.shadows);
     if (options.sequence && options.png.empty()) throw UsageError("--sequence needs -o NAME.png to name its files by.");
-    checkExportLights(options.lights);
     std::vector<std::string> outputs = namesOf(options.files);
     outputs.insert(outputs.end(), {options.exr, options.statistics, options.lights});
     if (!options.sequence) outputs.push_back(options.png);

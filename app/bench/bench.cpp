@@ -153,7 +153,7 @@ int bench(const BenchOptions& options) {
         if (!names.insert(name).second) throw UsageError(fmt::format("--variants names '{}' twice.", name));
     }
     checkPreset(options.preset, options.variants);
-    checkExportLights(options.lights);
+    requireExtension(options.lights, ".gltf");
     const std::string outputs[] = {options.json, options.lights};
     checkOutputs(outputs, {&options.settings.scene, 1});
     const renderer::VulkanInstance instance(instanceDescOf(options.settings));

@@ -58,7 +58,7 @@ int verify(const VerifyOptions& options) {
     if (options.settings.unquantised)
         throw UsageError("--unquantised has no meaning here: verify reads what is stored.");
     // What is refused leaves no folder behind. A file within a folder that is still to be made has to wait for it.
-    checkExportLights(options.exportedLights);
+    requireExtension(options.exportedLights, ".gltf");
     const std::string outputs[] = {options.json, options.exportedLights};
     const bool withinMaps = liesIn(options.json, options.maps) || liesIn(options.exportedLights, options.maps);
     if (!withinMaps) checkOutputs(outputs, {&options.settings.scene, 1});

@@ -102,10 +102,11 @@ TEST_P(Readback, DepthsAreTrue) {
     expectTrueDepths(device(), "reversed Z to 30 m", drawGeometry(renderer, view, DeviceDepth::ReversedZ), nothing);
     expectTrueDepths(device(), "standard Z to 30 m", drawGeometry(renderer, view, DeviceDepth::StandardZ),
                      [&](double z) { return kStep * z * z / nearest; });
-    // Without a far plane an orthographic camera sees 10,000 m.
+    // Without a far plane an orthographic camera sees 10,000 of its half heights.
+    const double farthest = 1e4 * static_cast<double>(flat.camera.orthographicHalfHeight);
     for (const DeviceDepth depth : {DeviceDepth::ReversedZ, DeviceDepth::StandardZ})
         expectTrueDepths(device(), depth == DeviceDepth::ReversedZ ? "orthographic, reversed Z" : "orthographic",
-                         drawGeometry(renderer, flat, depth), [&](double) { return kStep * 1e4; });
+                         drawGeometry(renderer, flat, depth), [&](double) { return kStep * farthest; });
 }
 
 TEST_P(Readback, NormalsAreTheFacesOfFlatThings) {

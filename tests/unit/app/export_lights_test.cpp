@@ -21,7 +21,7 @@ protected:
 };
 
 TEST_F(ExportLights, ScatteredOnesAndTheScenesOwn) {
-    expectGood("render boxes --lights 12 --shadows off --size 16x16 --stats out.json --export-lights lights.gltf");
+    expectGood("render boxes --lights 12 --filter hard --shadows off --size 16x16 --stats out.json --export-lights lights.gltf");
     const renderer::Scene scene = read("lights.gltf");
     const nlohmann::json stats = readJson("out.json")["sceneLights"];
     ASSERT_EQ(scene.lights.size(), 15u);
@@ -32,7 +32,7 @@ TEST_F(ExportLights, ScatteredOnesAndTheScenesOwn) {
         EXPECT_FLOAT_EQ(scene.lights[i].sourceRadius, stats[i]["sourceRadiusMetres"]);
     }
     // What is given back gives the same lights.
-    expectGood("render lights.gltf --size 16x16 --shadows off --export-lights again.gltf");
+    expectGood("render lights.gltf --size 16x16 --filter hard --shadows off --export-lights again.gltf");
     std::ifstream first(folder_ / "lights.gltf"), second(folder_ / "again.gltf");
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(first), {}),
               std::string(std::istreambuf_iterator<char>(second), {}));
@@ -52,8 +52,8 @@ TEST_F(ExportLights, AsTheyAreInTheLastFrame) {
         << R"({"bufferView":1,"componentType":5126,"count":2,"type":"VEC3"}],"bufferViews":[)"
         << R"({"buffer":0,"byteLength":8},{"buffer":0,"byteOffset":8,"byteLength":24}],"buffers":[)"
         << scene_tests::dataBuffer(bytes) << "]}";
-    expectGood("render moving.gltf --size 16x16 --shadows off --time 1 --export-lights one.gltf");
-    expectGood("render moving.gltf --size 16x16 --shadows off --time 1 --frames 3 --fps 4 --export-lights three.gltf");
+    expectGood("render moving.gltf --size 16x16 --filter hard --shadows off --time 1 --export-lights one.gltf");
+    expectGood("render moving.gltf --size 16x16 --filter hard --shadows off --time 1 --frames 3 --fps 4 --export-lights three.gltf");
     for (const auto& [name, x] : {std::pair("one.gltf", 2.0), std::pair("three.gltf", 3.0)}) {
         const renderer::Scene scene = read(name);
         ASSERT_EQ(scene.lights.size(), 1u);
@@ -64,7 +64,7 @@ TEST_F(ExportLights, AsTheyAreInTheLastFrame) {
 }
 
 TEST_F(ExportLights, OnlyWhatShines) {
-    expectGood("render boxes --light 1 --shadows off --size 16x16 --export-lights lights.gltf");
+    expectGood("render boxes --light 1 --filter hard --shadows off --size 16x16 --export-lights lights.gltf");
     const renderer::Scene scene = read("lights.gltf");
     ASSERT_EQ(scene.lights.size(), 1u);
     EXPECT_EQ(scene.lights[0].position, glm::vec3(1.5f, 2.0f, -1.3f));
@@ -73,7 +73,7 @@ TEST_F(ExportLights, OnlyWhatShines) {
 TEST_F(ExportLights, WithEveryCommandThatHasLights) {
     expectGood("verify boxes --lights 2 --filter hard --size 64x36 --quiet --export-lights verify.gltf");
     EXPECT_EQ(read("verify.gltf").lights.size(), 5u);
-    expectGood("bench boxes --lights 2 --variants off --size 64x64 --warmup 1 --frames 2 --export-lights bench.gltf");
+    expectGood("bench boxes --filter hard --lights 2 --variants off --size 64x64 --warmup 1 --frames 2 --export-lights bench.gltf");
     EXPECT_EQ(read("bench.gltf").lights.size(), 5u);
 }
 

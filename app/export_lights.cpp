@@ -22,9 +22,9 @@ void addExportLights(CLI::App& command, std::string& file) {
         ->check(fileName());
 }
 
-void exportLights(const Session& session, const std::string& file, double timeSeconds) {
+void exportLights(const Session& session, const std::string& file, double timeSeconds,
+                  const std::vector<std::uint32_t>& only) {
     if (file.empty()) return;
-    const std::vector<std::uint32_t>& only = session.settings().onlyLights;
     const std::vector<renderer::SceneLight> posed = renderer::poseAt(session.scene(), timeSeconds).lights;
     std::vector<renderer::SceneLight> lights;
     for (std::uint32_t i = 0; i < posed.size(); ++i)
@@ -32,7 +32,7 @@ void exportLights(const Session& session, const std::string& file, double timeSe
     if (lights.empty()) throw UsageError("There is no light to export.");
     const std::string text = renderer::lightsAsGltf(lights, session.scene().origin);
     renderer::replaceFile(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-    sayProgress(fmt::format("Exported {} lights to {}.", lights.size(), file));
+    sayProgress(fmt::format("Exported {} light{} to {}.", lights.size(), lights.size() == 1 ? "" : "s", file));
 }
 
 }  // namespace gnomon::app

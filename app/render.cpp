@@ -114,7 +114,8 @@ void renderWithin(const renderer::VulkanInstance& instance, const RenderOptions&
     const Session session(instance, options.settings);
     const std::vector<std::uint32_t> lights = visibilityLights(options.files, session);
     exportLights(session, options.lights,
-                 frameTime(options.settings.time, options.frames - 1, options.framesPerSecond));
+                 frameTime(options.settings.time, options.frames - 1, options.framesPerSecond),
+                 options.settings.onlyLights);
     const Stopwatch setUp;
     renderer::RendererDesc desc = session.rendererDesc();
     desc.floatPicture = floatPicture(options);
@@ -135,7 +136,7 @@ int render(const RenderOptions& options) {
     if (options.settings.unquantised && options.shadows != "inline")
         throw UsageError("--unquantised goes with --shadows inline alone.");
     checkExtension(options.png, ".png");
-    checkExtension(options.exr, ".exr");
+    requireExtension(options.exr, ".exr");
     requireExtension(options.lights, ".gltf");
     checkFrameFiles(options.files, options.shadows);
     if (options.sequence && options.png.empty()) throw UsageError("--sequence needs -o NAME.png to name its files by.");

@@ -16,6 +16,7 @@ namespace {
 
 constexpr float kNearOfTarget = 1.0e-3f, kNearOfScene = 4.0e-3f, kBehindAll = 1.01f;
 constexpr float kLeastDegrees = 1.0f, kMostDegrees = 170.0f, kMostRoll = 360.0f;
+constexpr float kLeastHeight = 1.0e-6f, kMostHeight = 1.0e9f;  // as far apart as scenes are
 
 struct Wanted {
     glm::vec3 eye{0.0f}, target{0.0f};
@@ -119,8 +120,9 @@ Result cameraOf(const Wanted& wanted, const Scene& scene, SceneCamera& out) {
     if (!(degrees >= kLeastDegrees && degrees <= kMostDegrees))
         return Result::failure(Status::BadArgument, "A vertical field of view of %g degrees is outside %g to %g.",
                                double(degrees), double(kLeastDegrees), double(kMostDegrees));
-    if (wanted.height && !(*wanted.height > 0.0f))
-        return Result::failure(Status::BadArgument, "A view's height of %g is not above 0.", double(*wanted.height));
+    if (wanted.height && !(*wanted.height >= kLeastHeight && *wanted.height <= kMostHeight))
+        return Result::failure(Status::BadArgument, "A view's height of %g is outside %g to %g.",
+                               double(*wanted.height), double(kLeastHeight), double(kMostHeight));
     if (!(std::abs(wanted.roll) <= kMostRoll))
         return Result::failure(Status::BadArgument, "A roll of %g degrees is outside -%g to %g.", double(wanted.roll),
                                double(kMostRoll), double(kMostRoll));

@@ -131,7 +131,7 @@ void checkLists(const std::vector<Variant>& variants) {
 
 void benchWithin(const renderer::VulkanInstance& instance, const BenchOptions& options) {
     const Session session(instance, options.settings);
-    exportLights(session, options.lights, options.settings.time);
+    exportLights(session, options.lights, options.settings.time, {});
     if (session.device().timestampPeriodNs() == 0.0)
         throw std::runtime_error(fmt::format("'{}' has no timestamps to measure with.", session.device().info().name));
     Measurement measured = {session, measure(session, options), std::nullopt, options.warmUp, options.framesPerSecond};

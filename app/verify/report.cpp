@@ -144,7 +144,7 @@ void writeVerified(const Session& session, const VerifyOptions& options, const V
     out["settings"].update({{"rays", options.rays},
                             {"subset", options.subset},
                             {"edgeSet", options.edgeSet},
-                            {"lights", options.lights}});
+                            {"onlyLights", options.lights}});
     Json lights = Json::array();
     for (const VerifiedLight& light : result.lights) {
         Json row = {{"index", light.index},

@@ -31,8 +31,8 @@ std::vector<BiasSetting> sweepOf(const VerifyOptions& options) {
 
 void verifyWithin(const renderer::VulkanInstance& instance, const VerifyOptions& options) {
     const Session session(instance, options.settings);
-    exportLights(session, options.exportedLights, options.settings.time);
     for (const std::uint32_t light : options.lights) checkLight(light, session.scene());
+    exportLights(session, options.exportedLights, options.settings.time, options.lights);
     const Stopwatch setUp;
     Verification verification(session, options, sweepOf(options));
     sayProgress(fmt::format("Drawn, and made ready to trace, in {:.1f} s.", setUp.seconds()));
@@ -60,10 +60,11 @@ int verify(const VerifyOptions& options) {
     // What is refused leaves no folder behind. A file within a folder that is still to be made has to wait for it.
     requireExtension(options.exportedLights, ".gltf");
     const std::string outputs[] = {options.json, options.exportedLights};
-    const bool withinMaps = liesIn(options.json, options.maps) || liesIn(options.exportedLights, options.maps);
-    if (!withinMaps) checkOutputs(outputs, {&options.settings.scene, 1});
+    const auto outside = [&](const std::string& file) { return liesIn(file, options.maps) ? std::string() : file; };
+    const std::string first[] = {outside(options.json), outside(options.exportedLights)};
+    checkOutputs(first, {&options.settings.scene, 1});
     prepareFolder(options.maps);
-    if (withinMaps) checkOutputs(outputs, {&options.settings.scene, 1});
+    checkOutputs(outputs, {&options.settings.scene, 1});
     const renderer::VulkanInstance instance(instanceDescOf(options.settings));
     verifyWithin(instance, options);
     return exitCodeOf(instance, options.settings);

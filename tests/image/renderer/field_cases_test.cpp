@@ -26,7 +26,10 @@ std::optional<View3d> field(const std::string& file) {
     if (folder == nullptr) return std::nullopt;
     View3d view;
     view.name = std::filesystem::path(file).stem().string();
-    if (!loadGltf(std::filesystem::path(folder) / "field" / file, view.scene).ok()) return std::nullopt;
+    const std::filesystem::path path = std::filesystem::path(folder) / "field" / file;
+    if (!std::filesystem::is_regular_file(path)) return std::nullopt;
+    const Result loaded = loadGltf(path, view.scene);
+    EXPECT_TRUE(loaded.ok()) << loaded.message();
     completeLights(view.scene);
     view.camera = defaultCamera(view.scene);
     return view;

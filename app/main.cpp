@@ -1,7 +1,7 @@
 // gnomon: renders pictures with tiled deferred shadows, measures and verifies them, and compares pictures.
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdio>

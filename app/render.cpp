@@ -79,7 +79,8 @@ FrameResult renderFrames(renderer::Renderer& renderer, const Session& session, c
         std::vector<float>& biases = result.cascadeBiases.emplace_back();
         if (light.kind != renderer::LightKind::Directional) continue;
         const float bias = statedBias(light, renderer.settings()).value_or(renderer::kBiasMetres);
-        for (const ShadowView& view : renderer.shadowViews(i)) biases.push_back(std::clamp(bias, view.leastBias, view.mostBias));
+        for (const ShadowView& view : renderer.shadowViews(i))
+            biases.push_back(std::clamp(bias, view.leastBias, view.mostBias));
     }
     result.memory = renderer.memory();
     result.library = renderer.libraryMemory();
@@ -113,8 +114,7 @@ void printWritten(const RenderOptions& options) {
 void renderWithin(const renderer::VulkanInstance& instance, const RenderOptions& options) {
     const Session session(instance, options.settings);
     const std::vector<std::uint32_t> lights = visibilityLights(options.files, session);
-    exportLights(session, options.lights,
-                 frameTime(options.settings.time, options.frames - 1, options.framesPerSecond),
+    exportLights(session, options.lights, frameTime(options.settings.time, options.frames - 1, options.framesPerSecond),
                  options.settings.onlyLights);
     const Stopwatch setUp;
     renderer::RendererDesc desc = session.rendererDesc();

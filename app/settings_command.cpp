@@ -1,7 +1,7 @@
 // gnomon settings: the table of settings, as docs/settings.md has it.
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "app/commands.h"
 #include "app/errors.h"

@@ -67,8 +67,7 @@ Material MaterialLoader::load(const tinygltf::Material& source, const std::strin
     if (const auto* glossy = extension(source.extensions, "KHR_materials_pbrSpecularGlossiness"))
         specularGlossiness(*glossy, out, user);
     const tinygltf::Value* flag = member(source.extras, "subsurface");
-    out.subsurface = (flag && flag->Get<bool>()) ||
-                     source.extensions.contains("KHR_materials_transmission") ||
+    out.subsurface = (flag && flag->Get<bool>()) || source.extensions.contains("KHR_materials_transmission") ||
                      source.extensions.contains("KHR_materials_diffuse_transmission");
     return out;
 }

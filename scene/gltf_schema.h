@@ -14,8 +14,8 @@ namespace gnomon::renderer::gltf {
 void checkVersion(const nlohmann::json& root);
 
 /// Refuses the first property of a wrong type, count or word. Looks at what the loader reads, drawn or not, in the core
-/// format, in the extensions that it knows and in `extras`. Properties that are absent or that it does not read are left alone, and
-/// so are indices that point nowhere.
+/// format, in the extensions that it knows and in `extras`. Properties that are absent or that it does not read are
+/// left alone, and so are indices that point nowhere.
 void checkTypes(const nlohmann::json& root);
 
 }  // namespace gnomon::renderer::gltf

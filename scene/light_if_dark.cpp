@@ -13,7 +13,8 @@ void lightIfDark(Scene& scene) {
     sun.colour = {1.0f, 0.96f, 0.9f};
     sun.intensity = 0.6f;  // lux, where Scene::skyColour gives a surface that looks up about 0.1
     scene.lights.push_back(sun);
-    scene.notes.emplace_back("There is no light in the file: a sun was added, and the exposure follows from the picture.");
+    scene.notes.emplace_back(
+        "There is no light in the file: a sun was added, and the exposure follows from the picture.");
 }
 
 }  // namespace gnomon::renderer

@@ -1,8 +1,8 @@
 // Measures variants in one process, in turn, frame by frame. So whatever the machine does meanwhile (clocks, heat,
 // other work) meets all of them alike. The ratio is the result.
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <memory>

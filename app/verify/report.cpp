@@ -45,17 +45,17 @@ std::vector<std::string> warningsOf(const VerifyResult& result) {
     }
     if (worst != nullptr)
         warnings.push_back(fmt::format(
-            "{} of {} lights have more than {:.0f} % of their pairs set aside (edges, penumbrae, subsurface), where acne "
+            "{} of {} lights have more than {:.0f} % of their pairs set aside (edges, penumbrae, subsurface), where "
+            "acne "
             "and leak say nothing. Light #{} {} is the worst: {:.1f} % are set aside, and {:.2f} % of these are wrong.",
             many, result.lights.size(), 100.0 * kMuchSetAside, worst->index, worst->name,
             100.0 * worst->figures.setAside(), 100.0 * worst->figures.wrongOfSetAside()));
     if (withoutMap != 0)
-        warnings.push_back(
-            fmt::format("{} of {} lights have no shadowmap, so that they light through everything.", withoutMap,
-                        result.lights.size()));
+        warnings.push_back(fmt::format("{} of {} lights have no shadowmap, so that they light through everything.",
+                                       withoutMap, result.lights.size()));
     if (result.lightsLeftOut != 0)
-        warnings.push_back(fmt::format("{} visible lights were left out of the frame, since it has too many.",
-                                       result.lightsLeftOut));
+        warnings.push_back(
+            fmt::format("{} visible lights were left out of the frame, since it has too many.", result.lightsLeftOut));
     return warnings;
 }
 

@@ -1,7 +1,7 @@
 // gnomon verify: the shadows of one frame against ray-traced truth, light by light.
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <memory>

@@ -99,8 +99,7 @@ std::vector<LightShadowViews> lightViews(const PreparedLights& prepared, const S
     out.reserve(prepared.visible.size());
     for (const LightOnScreen& light : prepared.visible) {
         const std::uint32_t first = plan.firstView[light.light];
-        out.push_back(first == kNoShadowViews ? LightShadowViews{}
-                                              : LightShadowViews{first, viewsFrom(first, plan)});
+        out.push_back(first == kNoShadowViews ? LightShadowViews{} : LightShadowViews{first, viewsFrom(first, plan)});
     }
     return out;
 }

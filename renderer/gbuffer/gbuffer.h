@@ -17,7 +17,7 @@ namespace gnomon::renderer {
 /// What the pass needs of a camera. Positions are relative to the origin that GpuScene::recordTransforms() was given.
 struct GBufferCamera {
     glm::mat4 viewFromWorld{1.0f}, clipFromView{1.0f};
-    glm::mat4 clipFromWorld{1.0f};  ///< their product, for culling
+    glm::mat4 clipFromWorld{1.0f};          ///< their product, for culling
     glm::vec4 eye{0.0f, 0.0f, 0.0f, 1.0f};  ///< xyz position, w 1; orthographic: xyz direction towards the camera, w 0
     DeviceDepth deviceDepth = DeviceDepth::ReversedZ;
     bool mirrored = false;  ///< the view turns the winding around (a reflection)

@@ -1,6 +1,6 @@
 #pragma once
-// Splits a primitive into clusters: runs of neighbouring triangles with a bounding sphere and box, small enough to be culled
-// per view and large enough that a draw call per cluster costs nothing. Pure CPU.
+// Splits a primitive into clusters: runs of neighbouring triangles with a bounding sphere and box, small enough to be
+// culled per view and large enough that a draw call per cluster costs nothing. Pure CPU.
 
 #include <cstdint>
 #include <glm/glm.hpp>

@@ -9,8 +9,8 @@ namespace gnomon::renderer {
 struct ScenePart {
     glm::dvec3 centre{0.0};  ///< world
     double radius = 0.0;
-    bool seen = false;          ///< the camera may see some of it
-    glm::dmat3 halfAxes{0.0};   ///< columns: from the centre to the middles of three faces of the box
+    bool seen = false;         ///< the camera may see some of it
+    glm::dmat3 halfAxes{0.0};  ///< columns: from the centre to the middles of three faces of the box
 };
 
 /// Planes of a frustum around the frame's origin and, optionally, a sphere (a light's range).

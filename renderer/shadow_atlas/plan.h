@@ -74,8 +74,8 @@ struct ShadowPlan {
 /// range times as small, and with reversed-Z floats they lose nothing by that: a float's step is a share of its value.
 float shadowNearMetres(float rangeMetres);
 
-/// Local lights: 6 views along the axes of world space for point lights and wide spots, else 1. A spot is wide where six
-/// faces need fewer texels than one view, for the same sharpness along its axis: beyond 68 degrees.
+/// Local lights: 6 views along the axes of world space for point lights and wide spots, else 1. A spot is wide where
+/// six faces need fewer texels than one view, for the same sharpness along its axis: beyond 68 degrees.
 std::uint32_t shadowFaces(const ShadowLight& light);
 
 /// The view of one square: one of shadowFaces(), of six in the order +X -X +Y -Y +Z -Z.

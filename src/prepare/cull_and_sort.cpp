@@ -25,10 +25,10 @@
 namespace gnomon::prepare {
 namespace {
 
-constexpr double kDirectionalRange = 3.0e38;   // metres; what structs.h states
-constexpr float kLargestCoordinate = 1e9f;     // metres; squares of it are far from a float's end
+constexpr double kDirectionalRange = 3.0e38;  // metres; what structs.h states
+constexpr float kLargestCoordinate = 1e9f;    // metres; squares of it are far from a float's end
 constexpr float kLargestConeAngle = 0.5f * std::numbers::pi_v<float>;  // what scene.h states
-constexpr float kLargestAngularRadius = 0.5f;  // radians; what scene.h states
+constexpr float kLargestAngularRadius = 0.5f;                          // radians; what scene.h states
 
 Vec3 toVec3(const float* f) {
     return {f[0], f[1], f[2]};

@@ -58,8 +58,8 @@ TEST(FuzzGltf, MutatedFiles) {
     std::uint64_t loaded = 0, traced = 0;
     for (std::uint64_t i = 0; i < cases; ++i) {
         Random random((first << 32) + i);
-        const std::string text = mutated(files[i % files.size()], random)
-                                     .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+        const std::string text =
+            mutated(files[i % files.size()], random).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
         const fs::path file = folder.path / "case.gltf";
         std::ofstream(file, std::ios::binary) << text;
         alarm(kLongestSeconds);

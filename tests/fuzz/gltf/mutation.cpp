@@ -19,20 +19,52 @@ const T& oneOf(const T (&values)[N], Random& random) {
 
 json anyNumber(Random& random) {
     // Limits of types, of the loader, and numbers that are nearly right.
-    static const json numbers[] = {0,      1,          2,          3,      4,         7,     12,     16,   64,
-                                   255,    256,        65535,      65536,  5120,      5121,  5123,   5125, 5126,
-                                   -1,     -2,         2147483647, -0.0,   0.5,       1e-30, -1e-30, 1e10, 1e15,
-                                   1.1e15, 3.5e38,     -3.5e38,    1e300,  -1e300,    1e-45, 0.001,  1.5,  1.5707963,
-                                   1.6,    4294967295, 4294967296, 1ull << 53, 1ull << 63, 1e8, -1e8, 1e-6, 100};
+    static const json numbers[] = {0,          1,     2,    3,         4,          7,          12,         16,
+                                   64,         255,   256,  65535,     65536,      5120,       5121,       5123,
+                                   5125,       5126,  -1,   -2,        2147483647, -0.0,       0.5,        1e-30,
+                                   -1e-30,     1e10,  1e15, 1.1e15,    3.5e38,     -3.5e38,    1e300,      -1e300,
+                                   1e-45,      0.001, 1.5,  1.5707963, 1.6,        4294967295, 4294967296, 1ull << 53,
+                                   1ull << 63, 1e8,   -1e8, 1e-6,      100};
     return oneOf(numbers, random);
 }
 
 json anyWord(Random& random) {
-    static const char* const words[] = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4", "OPAQUE", "MASK", "BLEND",
-                                        "LINEAR", "STEP", "CUBICSPLINE", "translation", "rotation", "scale", "weights",
-                                        "point", "spot", "directional", "perspective", "orthographic", "pcf", "hard",
-                                        "POSITION", "", "data:", "data:application/octet-stream;base64,", "data:;base64,////",
-                                        "missing.bin", "..", "/dev/null", "\u0000", "image/png", "2.0", "1.0"};
+    static const char* const words[] = {"SCALAR",
+                                        "VEC2",
+                                        "VEC3",
+                                        "VEC4",
+                                        "MAT2",
+                                        "MAT3",
+                                        "MAT4",
+                                        "OPAQUE",
+                                        "MASK",
+                                        "BLEND",
+                                        "LINEAR",
+                                        "STEP",
+                                        "CUBICSPLINE",
+                                        "translation",
+                                        "rotation",
+                                        "scale",
+                                        "weights",
+                                        "point",
+                                        "spot",
+                                        "directional",
+                                        "perspective",
+                                        "orthographic",
+                                        "pcf",
+                                        "hard",
+                                        "POSITION",
+                                        "",
+                                        "data:",
+                                        "data:application/octet-stream;base64,",
+                                        "data:;base64,////",
+                                        "missing.bin",
+                                        "..",
+                                        "/dev/null",
+                                        "\u0000",
+                                        "image/png",
+                                        "2.0",
+                                        "1.0"};
     return oneOf(words, random);
 }
 
@@ -57,13 +89,15 @@ json anything(Random& random) {
 
 const char* anyProperty(Random& random) {
     static const char* const names[] = {
-        "mesh",     "skin",     "camera",     "children",      "matrix",      "translation",  "rotation", "scale",
-        "weights",  "targets",  "indices",    "material",      "mode",        "attributes",   "JOINTS_0", "WEIGHTS_0",
-        "NORMAL",   "TANGENT",  "TEXCOORD_0", "TEXCOORD_1",    "COLOR_0",     "bufferView",   "count",    "byteOffset",
-        "sparse",   "type",     "byteStride", "componentType", "normalized",  "min",          "max",      "interpolation",
-        "input",    "output",   "path",       "node",          "range",       "intensity",    "color",    "extras",
-        "skeleton", "target",   "extensions", "doubleSided",   "alphaCutoff", "aspectRatio",  "zfar",     "yfov",
-        "spot",     "uri",      "byteLength", "joints",        "sampler",     "inverseBindMatrices"};
+        "mesh",       "skin",          "camera",      "children",      "matrix",     "translation",
+        "rotation",   "scale",         "weights",     "targets",       "indices",    "material",
+        "mode",       "attributes",    "JOINTS_0",    "WEIGHTS_0",     "NORMAL",     "TANGENT",
+        "TEXCOORD_0", "TEXCOORD_1",    "COLOR_0",     "bufferView",    "count",      "byteOffset",
+        "sparse",     "type",          "byteStride",  "componentType", "normalized", "min",
+        "max",        "interpolation", "input",       "output",        "path",       "node",
+        "range",      "intensity",     "color",       "extras",        "skeleton",   "target",
+        "extensions", "doubleSided",   "alphaCutoff", "aspectRatio",   "zfar",       "yfov",
+        "spot",       "uri",           "byteLength",  "joints",        "sampler",    "inverseBindMatrices"};
     return oneOf(names, random);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// glTF files that are wrong in ways that bytes at random hardly ever are: JSON stays JSON, but numbers, types, words and
-// references change, parts are left out, doubled, or put where others belong.
+// glTF files that are wrong in ways that bytes at random hardly ever are: JSON stays JSON, but numbers, types, words
+// and references change, parts are left out, doubled, or put where others belong.
 
 #include <cstdint>
 #include <nlohmann/json.hpp>

@@ -65,7 +65,8 @@ std::string trace(const Scene& scene, const Pose& pose, std::uint64_t seed) {
         const std::vector<float> result(ids.size(), 0.5f);
         completeSoftTruth(truth, traced, receivers, desc, result);
         const Figures figures = figuresOf(truth, result, true).opaque;
-        if (!std::isfinite(figures.visibilityError()) || figures.visibilityError() > 1.0) return "a figure is impossible";
+        if (!std::isfinite(figures.visibilityError()) || figures.visibilityError() > 1.0)
+            return "a figure is impossible";
     }
     return {};
 }

@@ -140,8 +140,8 @@ TEST_F(Pools, StayWhereTheySuffice) {
     });
 }
 
-// A resize that asks for the same pools as before keeps what has grown. One that asks for other pools gets them, and they
-// grow again.
+// A resize that asks for the same pools as before keeps what has grown. One that asks for other pools gets them, and
+// they grow again.
 TEST_F(Pools, KeepTheirSizeThroughAResizeUnlessOtherPoolsAreAskedFor) {
     onEveryDevice([](const renderer::Device& device, const Context& context, SmallScene& scene) {
         ViewDesc desc = starved(2);

@@ -1,8 +1,8 @@
-// Every variant of the library's pipelines, and the reference renderer's lighting pipelines with them, are made on every
-// Vulkan device found, with validation and without a message.
+// Every variant of the library's pipelines, and the reference renderer's lighting pipelines with them, are made on
+// every Vulkan device found, with validation and without a message.
 //
-// Run a second time (see tests/CMakeLists.txt) on RADV's null device, which compiles for AMD hardware that is not there:
-// so the 64-wide variants are proven to compile. Nothing is executed here.
+// Run a second time (see tests/CMakeLists.txt) on RADV's null device, which compiles for AMD hardware that is not
+// there: so the 64-wide variants are proven to compile. Nothing is executed here.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,10 +20,14 @@ namespace {
 
 using ::testing::HasSubstr;
 
-bool onNullDevice() { return std::getenv("RADV_FORCE_FAMILY") != nullptr; }
+bool onNullDevice() {
+    return std::getenv("RADV_FORCE_FAMILY") != nullptr;
+}
 
 // Waiting crashes in RADV's null device (docs/driver-ledger.md), and nothing is ever submitted here.
-VKAPI_ATTR VkResult VKAPI_CALL doNotWait(VkDevice) { return VK_SUCCESS; }
+VKAPI_ATTR VkResult VKAPI_CALL doNotWait(VkDevice) {
+    return VK_SUCCESS;
+}
 
 std::unique_ptr<VulkanInstance> makeInstance(const InstanceDesc& desc) {
     auto instance = std::make_unique<VulkanInstance>(desc);
@@ -89,7 +93,8 @@ std::vector<ShadowSettings> filtersOf() {
         out.push_back(settings);
     }
     settings.filters = only(Filter::Pcf);
-    for (settings.pcfRadius = 1; settings.pcfRadius <= gpu::kMaxPcfRadius; ++settings.pcfRadius) out.push_back(settings);
+    for (settings.pcfRadius = 1; settings.pcfRadius <= gpu::kMaxPcfRadius; ++settings.pcfRadius)
+        out.push_back(settings);
     return out;
 }
 

@@ -93,7 +93,8 @@ TEST_F(SurfaceTest, FlatInstancesCast) {
         scene.materials.resize(1);
         scene.materials[0].doubleSided = true;
         scene.meshes = {squareMesh()};
-        const glm::mat4 flat = glm::translate(glm::mat4(1.0f), {0, 1, 0}) * glm::scale(glm::mat4(1.0f), {0.5f, 0, 0.5f});
+        const glm::mat4 flat =
+            glm::translate(glm::mat4(1.0f), {0, 1, 0}) * glm::scale(glm::mat4(1.0f), {0.5f, 0, 0.5f});
         scene.instances.push_back({"flat", 0, flat * turnedAboutX(-50.0f)});
         scene.instances.push_back({"floor", 0, glm::scale(glm::mat4(1.0f), glm::vec3(9.0f)) * turnedAboutX(-90.0f)});
         GpuScene gpuScene(device, scene);

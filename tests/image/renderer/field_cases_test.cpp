@@ -35,7 +35,6 @@ std::optional<View3d> field(const std::string& file) {
     return view;
 }
 
-
 // Green radiance of the pixel in the middle, by the file's lights alone. Empty as field().
 std::optional<float> litCentre(const Device& device, const std::string& file) {
     std::optional<View3d> view = field(file);

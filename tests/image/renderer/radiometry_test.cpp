@@ -1,5 +1,5 @@
-// Unshadowed light against the formulas of glTF (KHR_lights_punctual): on a spot's axis irradiance is intensity over the
-// square of the distance, whatever the cone; and the inverse square holds to within a millimetre of the lamp.
+// Unshadowed light against the formulas of glTF (KHR_lights_punctual): on a spot's axis irradiance is intensity over
+// the square of the distance, whatever the cone; and the inverse square holds to within a millimetre of the lamp.
 #include <cmath>
 #include <cstdio>
 
@@ -14,8 +14,8 @@ GNOMON_IMAGE_TEST_SUITE(Radiometry);
 
 constexpr double kPi = 3.14159265358979;
 
-// A grey plane seen from straight above, in a black world, with one lamp above the middle of the picture. Of matter that
-// reflects diffusely alone, but for the 4 % that a dielectric mirrors.
+// A grey plane seen from straight above, in a black world, with one lamp above the middle of the picture. Of matter
+// that reflects diffusely alone, but for the 4 % that a dielectric mirrors.
 View3d lampOverPlane(const SceneLight& lamp, float eyeMetres) {
     View3d view = builtin("empty-plane");
     view.scene.lights = {lamp};
@@ -69,7 +69,8 @@ TEST_P(Radiometry, InverseSquareNearTheLamp) {
     for (const float metres : {10.0f, 0.1f, 0.01f, 0.001f}) {
         const View3d view = lampOverPlane(lampAt(metres, 10.0f * metres * metres), 3.0f * metres);
         // Positions come from depths, which hardware knows to some micrometres at the camera's three metres.
-        EXPECT_NEAR(middleOf(device(), view), expected, (2e-3 + 2e-5 / static_cast<double>(metres)) * expected) << metres;
+        EXPECT_NEAR(middleOf(device(), view), expected, (2e-3 + 2e-5 / static_cast<double>(metres)) * expected)
+            << metres;
     }
 }
 

@@ -64,8 +64,8 @@ TEST_P(Verify, FaceNormalsFromDepthOnWideFaces) {
     }
 }
 
-// Wide spots are as good as narrower ones, up to a hemisphere: neither in the light's own error nor in what is set aside
-// as an edge because of large texels.
+// Wide spots are as good as narrower ones, up to a hemisphere: neither in the light's own error nor in what is set
+// aside as an edge because of large texels.
 TEST_P(Verify, SpotsOfAnyWidth) {
     double aside = 0.0, error = 0.0;
     for (const float angle : {1.05f, 1.4f, 1.57079637f}) {

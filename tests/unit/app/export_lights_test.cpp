@@ -21,7 +21,9 @@ protected:
 };
 
 TEST_F(ExportLights, ScatteredOnesAndTheScenesOwn) {
-    expectGood("render boxes --lights 12 --filter hard --shadows off --size 16x16 --stats out.json --export-lights lights.gltf");
+    expectGood(
+        "render boxes --lights 12 --filter hard --shadows off --size 16x16 --stats out.json --export-lights "
+        "lights.gltf");
     const renderer::Scene scene = read("lights.gltf");
     const nlohmann::json stats = readJson("out.json")["sceneLights"];
     ASSERT_EQ(scene.lights.size(), 15u);
@@ -53,7 +55,9 @@ TEST_F(ExportLights, AsTheyAreInTheLastFrame) {
         << R"({"buffer":0,"byteLength":8},{"buffer":0,"byteOffset":8,"byteLength":24}],"buffers":[)"
         << scene_tests::dataBuffer(bytes) << "]}";
     expectGood("render moving.gltf --size 16x16 --filter hard --shadows off --time 1 --export-lights one.gltf");
-    expectGood("render moving.gltf --size 16x16 --filter hard --shadows off --time 1 --frames 3 --fps 4 --export-lights three.gltf");
+    expectGood(
+        "render moving.gltf --size 16x16 --filter hard --shadows off --time 1 --frames 3 --fps 4 --export-lights "
+        "three.gltf");
     for (const auto& [name, x] : {std::pair("one.gltf", 2.0), std::pair("three.gltf", 3.0)}) {
         const renderer::Scene scene = read(name);
         ASSERT_EQ(scene.lights.size(), 1u);
@@ -73,7 +77,9 @@ TEST_F(ExportLights, OnlyWhatShines) {
 TEST_F(ExportLights, WithEveryCommandThatHasLights) {
     expectGood("verify boxes --lights 2 --filter hard --size 64x36 --quiet --export-lights verify.gltf");
     EXPECT_EQ(read("verify.gltf").lights.size(), 5u);
-    expectGood("bench boxes --filter hard --lights 2 --variants off --size 64x64 --warmup 1 --frames 2 --export-lights bench.gltf");
+    expectGood(
+        "bench boxes --filter hard --lights 2 --variants off --size 64x64 --warmup 1 --frames 2 --export-lights "
+        "bench.gltf");
     EXPECT_EQ(read("bench.gltf").lights.size(), 5u);
 }
 

@@ -243,7 +243,8 @@ TEST_F(Program, TellsWhatEachLightGot) {
         << R"({"light":0}}},{"translation":[3,0,0],"extensions":{"KHR_lights_punctual":{"light":1}}}],)"
         << R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","extras":{"sourceRadius":0.25}},)"
         << R"({"type":"point","range":9}]}}})";
-    expectGood("render lamps.gltf --size 16x16 --filter hard --source-radius 0.125 --bias-metres 0.5 --stats guessed.json");
+    expectGood(
+        "render lamps.gltf --size 16x16 --filter hard --source-radius 0.125 --bias-metres 0.5 --stats guessed.json");
     lights = readJson("guessed.json")["sceneLights"];
     EXPECT_EQ(lights[0]["rangeGuessed"], true);
     EXPECT_EQ(lights[0]["sourceRadiusMetres"], 0.25);
@@ -275,7 +276,8 @@ TEST_F(Program, CompareTellsPicturesApart) {
 }
 
 TEST_F(Program, BenchMeasuresVariantsInTurn) {
-    expectGood("bench boxes --filter hard --size 64x64 --warmup 1 --frames 3 --variants deferred,inline,off --json out.json");
+    expectGood(
+        "bench boxes --filter hard --size 64x64 --warmup 1 --frames 3 --variants deferred,inline,off --json out.json");
     const nlohmann::json json = readJson("out.json");
     EXPECT_EQ(json["frames"], 3);
     EXPECT_EQ(json["variants"].size(), 3u);

@@ -57,7 +57,7 @@ public:
     std::vector<Pipeline> pipelines;
     std::map<VkDeviceMemory, std::vector<std::byte>> memory;  // all that was allocated and not freed
     std::uint32_t made = 0, destroyed = 0;                    // memory included
-    std::uint32_t callsWithoutDevice = 0;  // with a null VkDevice: a real driver crashes
+    std::uint32_t callsWithoutDevice = 0;                     // with a null VkDevice: a real driver crashes
 
     [[nodiscard]] const SetLayout* find(VkDescriptorSetLayout handle) const;
 };

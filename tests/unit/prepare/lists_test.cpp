@@ -63,8 +63,7 @@ TEST(Lists, OneLight) {
     EXPECT_EQ(g.lightMask, 0x0Fu);
     EXPECT_EQ(g.biasMetres, 0.004f);
     EXPECT_EQ(g.typeAndFlags, gpu::kLightPoint | gpu::kLightCastsBit | gpu::kLightSixFacesBit |
-                                  gpu::kFilterPcf << gpu::kLightFilterShift |
-                                  3u << gpu::kLightPcssPresetShift);
+                                  gpu::kFilterPcf << gpu::kLightFilterShift | 3u << gpu::kLightPcssPresetShift);
     EXPECT_EQ(g.shadowView, 0u);
     EXPECT_EQ(g.lightFade, 1.0f);
     EXPECT_EQ(g.shadowFade, 1.0f);

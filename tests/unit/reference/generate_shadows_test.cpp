@@ -204,7 +204,7 @@ struct BallOverFloor {
 TEST(GenerateShadows, ShadowOfABallIsADisk) {
     const double radius = 4 * std::tan(std::asin(0.25));
     for (const auto& [type, angle] : {std::pair(LightType::Point, 0.0f), std::pair(LightType::Spot, 0.785f),
-                                     std::pair(LightType::Spot, 1.57079637f)}) {  // six views, one, six
+                                      std::pair(LightType::Spot, 1.57079637f)}) {  // six views, one, six
         for (const bool reversed : {true, false}) {
             ShadowSetup setup;
             setup.viewSizePx = 256;

@@ -43,11 +43,11 @@ gpu::GpuLight toGpu(const LightModel& light, const CameraModel& camera) {
     out.sinOuter = light.type == LightType::Spot ? float(std::sin(light.outerAngle)) : 0.0f;
     out.positionVs.z = float(viewDepth(camera, light.position));
     out.sourceRadius = float(light.sourceRadius);
-    out.typeAndFlags =
-        std::uint32_t(light.type) | (light.casts ? gpu::kLightCastsBit : 0u) |
-        (light.shadowFades ? gpu::kLightShadowFadesBit : 0u) | (light.sixFaces ? gpu::kLightSixFacesBit : 0u) |
-        light.cascadeCount << gpu::kLightCascadesShift |
-        std::uint32_t(light.filter) << gpu::kLightFilterShift | light.pcssPreset << gpu::kLightPcssPresetShift;
+    out.typeAndFlags = std::uint32_t(light.type) | (light.casts ? gpu::kLightCastsBit : 0u) |
+                       (light.shadowFades ? gpu::kLightShadowFadesBit : 0u) |
+                       (light.sixFaces ? gpu::kLightSixFacesBit : 0u) | light.cascadeCount << gpu::kLightCascadesShift |
+                       std::uint32_t(light.filter) << gpu::kLightFilterShift |
+                       light.pcssPreset << gpu::kLightPcssPresetShift;
     out.lightMask = light.mask;
     out.shadowView = light.firstShadowView;
     out.hostIndex = light.hostIndex;

@@ -54,8 +54,8 @@ ScenePart randomPart(Random& random, const glm::dvec3& centre, double size, bool
 }
 
 glm::dvec3 pointOf(Random& random, const ScenePart& part) {
-    return part.centre + part.halfAxes * glm::dvec3(random.within(-1.0, 1.0), random.within(-1.0, 1.0),
-                                                    random.within(-1.0, 1.0));
+    return part.centre +
+           part.halfAxes * glm::dvec3(random.within(-1.0, 1.0), random.within(-1.0, 1.0), random.within(-1.0, 1.0));
 }
 
 // Of any scale, from millimetres to kilometres.
@@ -267,16 +267,16 @@ TEST(PartExtent, IsThatOfWhatThePlanesLeave) {
     for (int trial = 0; trial < 300; ++trial) {
         const ScenePart part = randomPart(random, random.direction() * 3.0, 2.0, true);
         std::vector<Plane> planes;
-        for (std::uint32_t p = random.below(4); p > 0; --p) planes.push_back({random.direction(), random.within(0.5, 3.0)});
+        for (std::uint32_t p = random.below(4); p > 0; --p)
+            planes.push_back({random.direction(), random.within(0.5, 3.0)});
         const glm::dvec3 axis = random.direction();
         const std::optional<Extent> extent = extentWithin(part, planes, axis);
         double low = 1e30, high = -1e30;
         std::size_t inside = 0;
         for (int p = 0; p < 20'000; ++p) {
             const glm::dvec3 point = pointOf(random, part);
-            if (std::any_of(planes.begin(), planes.end(), [&](const Plane& plane) {
-                    return glm::dot(plane.normal, point) + plane.offset < 0.0;
-                }))
+            if (std::any_of(planes.begin(), planes.end(),
+                            [&](const Plane& plane) { return glm::dot(plane.normal, point) + plane.offset < 0.0; }))
                 continue;
             ++inside;
             low = std::min(low, glm::dot(point, axis));
@@ -354,7 +354,8 @@ bool sameMatrix(const ShadowView& a, const ShadowView& b) {
     return std::equal(std::begin(a.clipFromWorld), std::end(a.clipFromWorld), std::begin(b.clipFromWorld));
 }
 
-// A walk in small steps: the cascade either is the same to the bit, or has moved by whole steps of kCascadeStepPx texels.
+// A walk in small steps: the cascade either is the same to the bit, or has moved by whole steps of kCascadeStepPx
+// texels.
 TEST(Cascades, MoveInWholeSteps) {
     Random random(5);
     std::size_t kept = 0, moved = 0;

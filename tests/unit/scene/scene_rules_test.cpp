@@ -178,10 +178,31 @@ TEST(SceneRules, CamerasFromText) {
     EXPECT_TRUE(parseCamera("door", scene, camera).ok());
     EXPECT_EQ(camera.nearMetres, 0.7f);
     EXPECT_TRUE(parseCamera("#0", scene, camera).ok());
-    for (const char* bad :
-         {"", "#1", "#", "#x", "window", "1,2,3", "1,2:3,4,5", "1,2,3:1,2,3", "1,2,3:4,5,6:0", "1,2,3:4,5,6:180",
-          "1,2,3:4,5,6:60:1", "1,2,3:4,5,6:60:height=2", "1,2,3:4,5,6:height=0", "1,2,3:4,5,6:height=1e38", "1,2,3:4,5,6:height=", "1,2,3:4,5,6:width=2",
-          "1,2,3:4,5,6:roll=1:roll=2", "1,2,3:4,5,6:roll=361", "1,2,3:4,5,6:roll=nan", "1,2,3:roll=1", "1,2,3:4,5,6:", "1,2,nan:4,5,6", "1,2,3,4:5,6,7", "1,2,3x:4,5,6", "1,,3:4,5,6"}) {
+    for (const char* bad : {"",
+                            "#1",
+                            "#",
+                            "#x",
+                            "window",
+                            "1,2,3",
+                            "1,2:3,4,5",
+                            "1,2,3:1,2,3",
+                            "1,2,3:4,5,6:0",
+                            "1,2,3:4,5,6:180",
+                            "1,2,3:4,5,6:60:1",
+                            "1,2,3:4,5,6:60:height=2",
+                            "1,2,3:4,5,6:height=0",
+                            "1,2,3:4,5,6:height=1e38",
+                            "1,2,3:4,5,6:height=",
+                            "1,2,3:4,5,6:width=2",
+                            "1,2,3:4,5,6:roll=1:roll=2",
+                            "1,2,3:4,5,6:roll=361",
+                            "1,2,3:4,5,6:roll=nan",
+                            "1,2,3:roll=1",
+                            "1,2,3:4,5,6:",
+                            "1,2,nan:4,5,6",
+                            "1,2,3,4:5,6,7",
+                            "1,2,3x:4,5,6",
+                            "1,,3:4,5,6"}) {
         SceneCamera untouched;
         untouched.nearMetres = 123.0f;
         EXPECT_FALSE(parseCamera(bad, scene, untouched).ok()) << bad;

@@ -125,8 +125,8 @@ TEST(ShadowBoundsCells, ListsWhatViewsTouch) {
         for (int v = 0; v < 8; ++v) {
             const std::uint32_t a = below(2);
             const std::uint32_t x = below(atlases[a].widthPx - 8), y = below(atlases[a].heightPx - 8);
-            views.push_back(viewAt(x, y, 8 + below(atlases[a].widthPx - x - 7), 8 + below(atlases[a].heightPx - y - 7), a,
-                                   below(atlases[a].layers)));
+            views.push_back(viewAt(x, y, 8 + below(atlases[a].widthPx - x - 7), 8 + below(atlases[a].heightPx - y - 7),
+                                   a, below(atlases[a].layers)));
             views.back().changed = below(2) == 0;  // the first frame knows nothing, so it does not matter
             expected.merge(touchedBy(views.back()));
         }
@@ -174,8 +174,7 @@ TEST(ShadowBoundsCells, WhatDoesNotFitHasNoBounds) {
     ShadowView view = viewAt(0, 0, 1024, 512);
     Frames frames(8);
     const std::vector<ShadowAtlas> fits = {atlasOf(1024, 512)}, large = {atlasOf(1024, 513)},
-                                   layered = {atlasOf(1024, 512, 2)},
-                                   huge = {atlasOf(1u << 30, 1u << 30, 1u << 10)};
+                                   layered = {atlasOf(1024, 512, 2)}, huge = {atlasOf(1u << 30, 1u << 30, 1u << 10)};
     EXPECT_EQ(frames.list({view}, fits).size(), 8u);
     for (const std::vector<ShadowAtlas>& atlases : {large, layered, huge}) {
         EXPECT_EQ(frames.list({view}, atlases).size(), 0u);

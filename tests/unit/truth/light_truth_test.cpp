@@ -187,9 +187,7 @@ TEST_F(PlantedErrors, WhatIsSetAsideIsTold) {
         SCOPED_TRACE(soft);
         desc.soft = soft;
         desc.subsetOf = 1;
-        const auto all = [&](const std::vector<float>& result) {
-            return figuresOf(truthFor(result), result, soft);
-        };
+        const auto all = [&](const std::vector<float>& result) { return figuresOf(truthFor(result), result, soft); };
         const LightFigures right = all(biased(0.0));
         EXPECT_LT(right.setAside(), 0.4);
         LightTruth coarse = truthFor(lost);
@@ -208,8 +206,8 @@ TEST_F(PlantedErrors, WhatIsSetAsideIsTold) {
 TEST_F(PlantedErrors, VisibilityErrorIsTheMeanDifference) {
     std::vector<float> result = biased(0.0);
     EXPECT_EQ(judged(result).visibilityError(), 0.0);
-    const auto dark = std::ranges::count_if(truthFor(result).pixels,
-                                            [](const PixelTruth& p) { return p.hard != HardTruth::Lit; });
+    const auto dark =
+        std::ranges::count_if(truthFor(result).pixels, [](const PixelTruth& p) { return p.hard != HardTruth::Lit; });
     for (float& v : result) v = v < 0.0f ? v : 1.0f;
     const Figures lost = judged(result);
     EXPECT_NEAR(lost.visibilityError(), static_cast<double>(dark) / static_cast<double>(lost.pairs), 1e-9);

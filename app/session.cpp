@@ -13,6 +13,7 @@
 #include "scene/load_gltf.h"
 #include "scene/play_animation.h"
 #include "scene/pose.h"
+#include "scene/scatter/scatter_lights.h"
 
 namespace gnomon::app {
 namespace {

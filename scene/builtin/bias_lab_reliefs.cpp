@@ -1,7 +1,7 @@
 // Sand, planes that lights graze, and plates from 1 to 20 mm.
 
 #include "scene/builtin/bias_lab.h"
-#include "scene/builtin/random.h"
+#include "scene/random.h"
 
 #include <algorithm>
 #include <array>

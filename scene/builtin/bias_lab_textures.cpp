@@ -2,7 +2,7 @@
 
 #include "scene/builtin/bias_lab.h"
 #include "scene/builtin/numbers.h"
-#include "scene/builtin/random.h"
+#include "scene/random.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #pragma once
-// Scenes made by code: the courtyard of the README, small scenes for tests, and lights scattered over any scene.
+// Scenes made by code: the courtyard of the README, and small scenes for tests.
 // Everything here is deterministic: the same arguments give the same scene.
 
 #include "scene/scene.h"
@@ -28,17 +28,5 @@ std::vector<BuiltinInfo> builtinScenes();
 
 // Empty for a name that builtinScenes() does not list.
 std::optional<Scene> makeBuiltinScene(std::string_view name, const BuiltinOptions& options = {});
-
-// What scattered lights shall cost in one picture.
-struct TileDensity {
-    float shadowedPerTile = 3.0f;  // mean over the shadow tiles (8x8 pixels) that show geometry, directional lights too
-    SceneCamera camera;
-    std::uint32_t widthPx = 1280, heightPx = 720;
-};
-
-// Adds `count` shadowed lights at plausible places of any scene; the rule stands at the head of scatter_lights.cpp.
-// Where a scene is so full that no free place is found, fewer are added and scene.notes says so. With `density` they
-// take the place of the scene's own point and spot lights, and their ranges follow from the picture's tiles.
-void scatterLights(Scene& scene, std::uint32_t count, std::uint64_t seed, const TileDensity* density = nullptr);
 
 }  // namespace gnomon::renderer

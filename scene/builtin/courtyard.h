@@ -3,8 +3,8 @@
 // 3 m deep, in bays of 2.6 m. Each side is built in its own frame: x along the side, +z into the court, z = 0 on the
 // line of the columns, y = 0 on the cobbles.
 
-#include "scene/builtin/random.h"
 #include "scene/builtin/shapes.h"
+#include "scene/random.h"
 
 #include <array>
 

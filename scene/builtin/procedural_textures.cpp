@@ -1,7 +1,7 @@
 #include "scene/builtin/procedural_textures.h"
 
 #include "scene/builtin/numbers.h"
-#include "scene/builtin/random.h"
+#include "scene/random.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Small scenes for tests: plain colours, few triangles, known distances.
 
 #include "scene/builtin/material_builders.h"
-#include "scene/builtin/random.h"
 #include "scene/builtin/scenes.h"
 #include "scene/builtin/shapes.h"
+#include "scene/random.h"
 
 #include <cmath>
 

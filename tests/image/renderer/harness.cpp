@@ -9,6 +9,7 @@
 #include <map>
 
 #include "renderer/gpu/error.h"
+#include "scene/scatter/scatter_lights.h"
 
 namespace gnomon::renderer::image_test {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "image/renderer/harness.h"
 #include "scene/load_gltf.h"
+#include "scene/scatter/scatter_lights.h"
 
 namespace gnomon::renderer::image_test {
 namespace {

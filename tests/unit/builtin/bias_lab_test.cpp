@@ -3,7 +3,7 @@
 #include "scene/builtin/bias_lab.h"
 #include "scene/builtin/builtin.h"
 #include "scene/builtin/implicit_surface.h"
-#include "scene/builtin/triangle_grid.h"
+#include "scene/scatter/triangle_grid.h"
 
 #include <gtest/gtest.h>
 #include <algorithm>

@@ -1,9 +1,10 @@
 // Every built-in scene: the same each time, sound geometry, lights in free air, sizes within their limits.
 
 #include "scene/builtin/builtin.h"
-#include "scene/builtin/tile_samples.h"
-#include "scene/builtin/triangle_grid.h"
 #include "scene/bulk.h"
+#include "scene/scatter/scatter_lights.h"
+#include "scene/scatter/tile_samples.h"
+#include "scene/scatter/triangle_grid.h"
 
 #include <gtest/gtest.h>
 

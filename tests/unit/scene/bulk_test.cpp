@@ -7,7 +7,7 @@
 
 #include "scene/outline.h"
 #include "scene/pose.h"
-#include "unit/builtin/cities.h"
+#include "unit/scatter/cities.h"
 
 namespace gnomon::renderer {
 namespace {

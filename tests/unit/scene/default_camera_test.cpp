@@ -6,7 +6,7 @@
 
 #include "scene/bulk.h"
 #include "scene/pose.h"
-#include "unit/builtin/cities.h"
+#include "unit/scatter/cities.h"
 
 namespace gnomon::renderer {
 namespace {

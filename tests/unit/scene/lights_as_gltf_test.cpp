@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "gltf_files.h"
-#include "scene/builtin/random.h"
 #include "scene/pose.h"
+#include "scene/random.h"
 
 using namespace scene_tests;
 

@@ -7,10 +7,11 @@
 #include <filesystem>
 
 #include "scene/builtin/builtin.h"
-#include "scene/builtin/tile_samples.h"
-#include "scene/builtin/triangle_grid.h"
 #include "scene/load_gltf.h"
-#include "unit/builtin/cities.h"
+#include "scene/scatter/scatter_lights.h"
+#include "scene/scatter/tile_samples.h"
+#include "scene/scatter/triangle_grid.h"
+#include "unit/scatter/cities.h"
 
 namespace gnomon::renderer {
 namespace {

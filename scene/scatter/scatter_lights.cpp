@@ -15,11 +15,12 @@
 // Intensity. About 8 lux at a third of the range, times 0.6 to 1.6. So a picture's exposure depends neither on the
 // scene's unit nor on the count. Source radius: 0.8 to 4 % of the free way that was used, 2 to 10 cm in a room.
 
-#include "scene/builtin/builtin.h"
-#include "scene/builtin/light_places.h"
-#include "scene/builtin/random.h"
-#include "scene/builtin/tile_samples.h"
-#include "scene/builtin/triangle_grid.h"
+#include "scene/scatter/scatter_lights.h"
+#include "scene/random.h"
+#include "scene/scatter/light_places.h"
+#include "scene/scatter/scatter_lights.h"
+#include "scene/scatter/tile_samples.h"
+#include "scene/scatter/triangle_grid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 // Triangles are clipped to the bounds of the grid, which are those of the bulk of the scene. So of a sky or of a plate
 // to the horizon no more counts than what is there. Where nothing reaches beyond the bounds, nothing is clipped.
 
-#include "scene/builtin/random.h"
-#include "scene/builtin/triangle_grid.h"
+#include "scene/random.h"
+#include "scene/scatter/triangle_grid.h"
 
 #include <functional>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "scene/builtin/triangle_cells.h"
+#include "scene/scatter/triangle_cells.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "scene/builtin/surface_sampler.h"
+#include "scene/scatter/surface_sampler.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 // A parked object or a sky dome would leave a grid over all of it with one cell for everything else. So there is a grid
 // over the bulk of the scene (scene/bulk.h), and a second one for what reaches beyond.
 
-#include "scene/builtin/triangle_cells.h"
+#include "scene/scatter/triangle_cells.h"
 
 namespace gnomon::renderer {
 

@@ -1,4 +1,4 @@
-#include "scene/builtin/triangle_grid.h"
+#include "scene/scatter/triangle_grid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "scene/builtin/tile_samples.h"
+#include "scene/scatter/tile_samples.h"
 
-#include "scene/builtin/random.h"
+#include "scene/random.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,10 @@
 // Scattered lights: deterministic, in free air, as dense as promised, in scenes of any size.
 
+#include "scene/scatter/scatter_lights.h"
 #include "scene/builtin/builtin.h"
-#include "scene/builtin/random.h"
-#include "scene/builtin/tile_samples.h"
-#include "scene/builtin/triangle_grid.h"
+#include "scene/random.h"
+#include "scene/scatter/tile_samples.h"
+#include "scene/scatter/triangle_grid.h"
 
 #include <gtest/gtest.h>
 #include <cmath>

@@ -1,9 +1,9 @@
 #pragma once
 // Where scattered lights hang. Two rules, each with its reasons in light_places.cpp.
 
-#include "scene/builtin/random.h"
-#include "scene/builtin/surface_sampler.h"
-#include "scene/builtin/triangle_grid.h"
+#include "scene/random.h"
+#include "scene/scatter/surface_sampler.h"
+#include "scene/scatter/triangle_grid.h"
 
 #include <optional>
 

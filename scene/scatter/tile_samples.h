@@ -3,8 +3,8 @@
 // tiles, nine pixels each. A light counts where phase 3 of the library would count it: at least one pixel lies in its
 // range and cone, and looks towards it or lets light through.
 
-#include "scene/builtin/builtin.h"
-#include "scene/builtin/triangle_grid.h"
+#include "scene/scatter/scatter_lights.h"
+#include "scene/scatter/triangle_grid.h"
 
 #include <span>
 

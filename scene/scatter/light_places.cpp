@@ -18,7 +18,7 @@
 //     outside solids
 //     nothing
 
-#include "scene/builtin/light_places.h"
+#include "scene/scatter/light_places.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 // Towns, rooms and skies for tests: plain triangles, one mesh per part.
 
-#include "scene/builtin/random.h"
+#include "scene/random.h"
 #include "scene/scene.h"
 
 #include <algorithm>

@@ -10,11 +10,14 @@
 namespace gnomon::renderer {
 namespace {
 
-constexpr double kGap = 4.0;             // reaches of empty space that part the bulk from what is far
-constexpr double kLong = 64.0;           // reaches; a floor 40 times as long as the ball on it is high is no horizon
-constexpr double kSmallerThanSky = 0.6;  // one just around a square is 1.7 times as large
+constexpr double kGap = 4.0;  // reaches of empty space that part the bulk from what is far
+// Reaches. A floor below a ball may be 40 times as long as the ball is high, and still belongs to it.
+constexpr double kLong = 64.0;
+// The size of what is below a sky, to the sky's: a ball just around a square is 1.7 times as large as the square.
+constexpr double kSmallerThanSky = 0.6;
+// The size of what stands on a plate, to the plate's: what is larger may be a building of its own.
 constexpr double kSmallerThanPlate = 0.25;
-constexpr double kFlat = 0.125;
+constexpr double kFlat = 0.125;          // least side to diagonal: hills may be so high
 constexpr double kHollow = 0.25;         // nearest to farthest point of what is around all else, with a gap
 constexpr double kRound = 0.7;           // without a gap: a cube has 0.58
 constexpr double kMostOfMedian = 256.0;  // areas; 16 times as long
@@ -183,7 +186,7 @@ bool isPlate(const Thing& thing, const Middle& m) {
     return diagonal(thing.box) > kLong * m.reach && std::min({size.x, size.y, size.z}) <= kFlat * diagonal(thing.box);
 }
 
-// What is smaller than so much of the thing decides, where that is no fewer things than the others.
+// Judged by the things smaller than `ofItsSize` times the thing, if they are at least half of all.
 template <class Fits>
 bool isAround(const Thing& thing, const std::vector<const Thing*>& things, double ofItsSize, Fits fits) {
     std::vector<const Thing*> smaller;

@@ -84,7 +84,7 @@ public:
             for (const glm::dvec3& p : t) addPoint(p);
         });
     }
-    // As a whole, as the bulk has judged it.
+    // Of something that deforms: all of it or nothing, as its box is held by the bulk.
     void addDeformed(const Thing& thing) {
         if (bulk_.holdsBoxOf(thing)) addVertices(thing);
     }

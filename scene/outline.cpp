@@ -7,7 +7,7 @@
 namespace gnomon::renderer {
 namespace {
 
-constexpr std::size_t kMorePoints = 2;  // before the next time, times those that are left
+constexpr std::size_t kMorePoints = 2;  // the hull is thinned whenever it has grown so many times as large
 
 bool turnsLeft(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0;

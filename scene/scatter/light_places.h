@@ -11,9 +11,9 @@ namespace gnomon::renderer {
 
 struct LightPlace {
     glm::vec3 position;
-    float free;      // metres of air back to the surface it was thrown from
-    glm::vec3 down;  // unit, towards that surface
-    bool aims;       // a spot there should have the surface in its cone
+    float freeMetres;    // of air, back to the surface it was thrown from
+    glm::vec3 down;      // unit, towards that surface
+    bool spotsLookDown;  // a spot there should have that surface in its cone
 };
 
 // Unit: off the axis by an angle, to the side that `turn` says; radians. Straight down, x is at 0.

@@ -31,8 +31,8 @@ namespace {
 
 constexpr float kMeanLightsPerPoint = 4.5f;
 constexpr int kSurfacePoints = 512;
-constexpr std::uint64_t kMostMoved = 1u << 20;  // lights of one seed
-constexpr float kLeastRange = 1e-6f;            // radii of the bulk
+constexpr std::uint64_t kSeedsApart = 1u << 20;  // between the seeds of lights that are moved
+constexpr float kLeastRange = 1e-6f;             // radii of the bulk
 constexpr float kDegree = 0.01745329252f;
 
 glm::vec3 pleasantColour(Random& random) {
@@ -55,13 +55,13 @@ SceneLight makeLight(const LightPlace& place, Random& random, std::uint32_t inde
     light.name = "scattered " + std::to_string(index);
     light.position = place.position;
     light.colour = pleasantColour(random);
-    light.sourceRadius = place.free * random.between(0.008f, 0.04f);
+    light.sourceRadius = place.freeMetres * random.between(0.008f, 0.04f);
     const bool spot = random.unit() < 0.4f;
     const float turn = 360.0f * kDegree * random.unit(), tilt = kDegree * random.between(0.0f, 50.0f);
     const float cone = kDegree * random.between(20.0f, 60.0f);
     if (spot) {
         light.kind = LightKind::Spot;
-        light.direction = tilted(place.down, place.aims ? std::min(tilt, 0.5f * cone) : tilt, turn);
+        light.direction = tilted(place.down, place.spotsLookDown ? std::min(tilt, 0.5f * cone) : tilt, turn);
         light.outerConeAngle = cone;
         light.innerConeAngle = 0.7f * cone;
     }
@@ -155,7 +155,7 @@ void moveWhatShinesOnNothing(std::vector<SceneLight>& lights, const LightPlaces&
     for (std::size_t i = 0; i < lights.size(); ++i) {
         SceneLight& light = lights[i];
         if (places.shinesOnAnything(light)) continue;
-        Random own(seed * kMostMoved + i + 1);
+        Random own(seed * kSeedsApart + i + 1);
         const std::optional<LightPlace> place = places.byRoom(own, 0.5f * light.rangeMetres);
         if (!place) continue;
         light.position = place->position;

@@ -102,15 +102,25 @@ public:
         const bool around = holds(part, camera_.position);
         const double farthest = std::min(extent->high - eye, far_);
         if (!(farthest > 0.0)) return std::nullopt;
-        const double distance = glm::length(part.centre - camera_.position);
-        const double radians = distance > part.radius ? part.radius / distance : 1.0;
-        return Sight{around ? 0.0 : std::max(extent->low - eye, 0.0), farthest, radians * radians};
+        const double size = sizeOf(part);
+        return Sight{around ? 0.0 : std::max(extent->low - eye, 0.0), farthest, size * size};
+    }
+    // What a picture of half the diagonal has as Sight::share.
+    [[nodiscard]] double wholePicture() const {
+        return camera_.halfDiagonalMetres > 0.0 ? 1.0 : camera_.tangent * camera_.tangent;
     }
     [[nodiscard]] bool mayHold(const ScenePart& part) const {
         return frustum_.planeCount == 0 || frustum_.mayHold(part.centre, static_cast<float>(part.radius));
     }
 
 private:
+    // Perspective: radians; orthographic: to half the picture's diagonal.
+    [[nodiscard]] double sizeOf(const ScenePart& part) const {
+        if (camera_.halfDiagonalMetres > 0.0) return std::min(part.radius / camera_.halfDiagonalMetres, 1.0);
+        const double distance = glm::length(part.centre - camera_.position);
+        return distance > part.radius ? part.radius / distance : 1.0;
+    }
+
     const CascadeCamera& camera_;
     const CullVolume& frustum_;
     std::vector<Plane> sides_;
@@ -152,6 +162,20 @@ void addPlanes(std::vector<SeenPlane>& planes, const Sights& sights, std::span<c
     }
 }
 
+// Where the farthest ends that is more than a speck. All that lies beyond is together less than a pixel of a 4K
+// picture: something that is parked there has no say.
+double farthestOf(std::vector<Sight>& sights, double wholePicture) {
+    constexpr double kSpeck = 1e-7;  // of the picture
+    std::stable_sort(sights.begin(), sights.end(),
+                     [](const Sight& a, const Sight& b) { return a.farthest > b.farthest; });
+    double beyond = 0.0;
+    for (const Sight& sight : sights) {
+        beyond += sight.share;
+        if (beyond > kSpeck * wholePicture) return sight.farthest;
+    }
+    return sights.front().farthest;
+}
+
 // Where all but a small share of what is seen has not begun.
 double mostOf(std::vector<Sight>& sights) {
     constexpr double kLess = 0.05;
@@ -185,12 +209,11 @@ SeenRange seenRangeOf(const CascadeCamera& camera, const CullVolume& frustum, st
     }
     addPlanes(planes, sights, parts, travel, found);
     if (found.empty()) return {};
-    SeenRange range = {found[0].nearest, 0.0, 0.0};
+    SeenRange range = {found[0].nearest, farthestOf(found, sights.wholePicture()), 0.0};
     // Of a box around the camera nobody knows where its surfaces are: not many are right before it.
     constexpr double kUnknown = 1.0 / 16.0;
     for (Sight& sight : found) {
         range.nearest = std::min(range.nearest, sight.nearest);
-        range.farthest = std::max(range.farthest, sight.farthest);
         if (sight.nearest == 0.0) sight.nearest = kUnknown * sight.farthest;
     }
     range.most = mostOf(found);

@@ -8,7 +8,8 @@
 //   most cascades as they were drawn.
 // - The slices' distances, and near and far along the light, move in steps, too.
 // Fitted: nothing here is in metres, and no bound of the whole scene counts.
-// - The slices end where the farthest part of the scene that is seen ends. They begin where the nearest one begins.
+// - The slices end where the farthest part of the scene that is seen ends, specks left out. They begin where the nearest
+//   one begins.
 // - A plane that is seen to the horizon counts only as far as something casts upon it.
 // - The first slice ends where most of what is seen has not begun, whatever stands right before the camera.
 // - Along the light a cascade holds what is seen within its square, and whatever may cast upon that.

@@ -123,6 +123,11 @@ void changeBytes(std::string& uri, Random& random) {
     }
 }
 
+bool isSmall(std::int64_t value) {
+    constexpr std::int64_t kMost = 1'000'000'000;
+    return -kMost < value && value < kMost;
+}
+
 void changeOne(json& root, Random& random) {
     std::vector<json*> parts;
     collect(root, parts);
@@ -159,7 +164,7 @@ void changeOne(json& root, Random& random) {
             if (part.is_object()) part[anyProperty(random)] = anything(random);
             break;
         default:  // a neighbouring number, as in an index that is off by one
-            if (part.is_number_integer() && part.get<std::int64_t>() < 1'000'000'000)
+            if (part.is_number_integer() && isSmall(part.get<std::int64_t>()))
                 part = part.get<std::int64_t>() + (below(random, 2) == 0 ? 1 : -1);
             break;
     }

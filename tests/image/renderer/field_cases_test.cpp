@@ -80,6 +80,25 @@ TEST_P(FieldCases, AParkedBoxChangesNothing) {
                 drawOnce(device(), *parked, desc, ShadowMode::Deferred).linear, 1);
 }
 
+// The same box before the camera, so far away that it is less than a pixel.
+TEST_P(FieldCases, AParkedBoxInViewChangesNothing) {
+    const std::optional<View3d> alone = field("02-sun-lost-in-a-wide-world/park_sun_0.gltf");
+    if (!alone) GTEST_SKIP() << kNoField;
+    View3d parked = *alone;
+    for (Instance& instance : parked.scene.instances)
+        if (instance.worldFromObject[3].y > 0.0 && instance.worldFromObject[3].y < 1.0) {
+            Instance far = instance;
+            far.worldFromObject[3] = glm::dvec4(0.0, 0.5, -3e5, 1.0);
+            far.node = kNone;
+            parked.scene.instances.push_back(far);
+            break;
+        }
+    ASSERT_GT(parked.scene.instances.size(), alone->scene.instances.size());
+    const RendererDesc desc = hardDesc(320, 180);
+    expectEqual(device(), "parked box in view", drawOnce(device(), *alone, desc, ShadowMode::Deferred).linear,
+                drawOnce(device(), parked, desc, ShadowMode::Deferred).linear, 1);
+}
+
 // On the axis of a spot, irradiance is intensity over squared distance, whatever the cone.
 TEST_P(FieldCases, NarrowSpots) {
     for (const char* file : {"a_spot_o0.05.gltf", "a_spot_o0.0175.gltf"}) {

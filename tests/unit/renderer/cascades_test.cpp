@@ -241,6 +241,21 @@ TEST(Cascades, APlaneCountsWhereSomethingCastsUponIt) {
     EXPECT_GT(plain.seen().farthest, 2.9e4);
 }
 
+// Parked in view, 300 km away: less than a pixel. Many of them are a town on the horizon.
+TEST(Cascades, ASpeckInViewIsNotReached) {
+    for (const double halfDiagonalMetres : {0.0, 3000.0}) {
+        Plain plain;
+        plain.camera.halfDiagonalMetres = halfDiagonalMetres;
+        plain.parts.erase(plain.parts.begin());
+        const SeenRange before = plain.seen();
+        plain.parts.push_back(box({1, 1, -3e5}, {0.25, 0.5, 0.25}, true));
+        EXPECT_EQ(plain.seen().farthest, before.farthest);
+        EXPECT_EQ(plain.seen().nearest, before.nearest);
+        for (int i = 0; i < 40; ++i) plain.parts.push_back(box({100.0 * i, 20, -3e5}, {50, 20, 50}, true));
+        EXPECT_GT(plain.seen().farthest, 2.9e5);
+    }
+}
+
 TEST(Cascades, AnEmptyPlaneNeedsNone) {
     Plain plain;
     plain.parts.resize(1);

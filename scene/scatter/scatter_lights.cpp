@@ -160,7 +160,7 @@ void moveWhatShinesOnNothing(std::vector<SceneLight>& lights, const LightPlaces&
         if (!place) continue;
         light.position = place->position;
         light.direction = place->down;
-        light.sourceRadius = std::min(light.sourceRadius, 0.04f * place->free);
+        light.sourceRadius = std::min(light.sourceRadius, 0.04f * place->freeMetres);
     }
 }
 

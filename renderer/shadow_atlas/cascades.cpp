@@ -162,18 +162,19 @@ void addPlanes(std::vector<SeenPlane>& planes, const Sights& sights, std::span<c
     }
 }
 
-// Where the farthest ends that is more than a speck. All that lies beyond is together less than a pixel of a 4K
-// picture: something that is parked there has no say.
-double farthestOf(std::vector<Sight>& sights, double wholePicture) {
+// Leaves out the farthest ones that are together less than a pixel of a 4K picture: something that is parked there has
+// no say. Where all is so small, it stays.
+void dropSpecks(std::vector<Sight>& sights, double wholePicture) {
     constexpr double kSpeck = 1e-7;  // of the picture
     std::stable_sort(sights.begin(), sights.end(),
                      [](const Sight& a, const Sight& b) { return a.farthest > b.farthest; });
     double beyond = 0.0;
-    for (const Sight& sight : sights) {
-        beyond += sight.share;
-        if (beyond > kSpeck * wholePicture) return sight.farthest;
+    for (auto sight = sights.begin(); sight != sights.end(); ++sight) {
+        beyond += sight->share;
+        if (!(beyond > kSpeck * wholePicture)) continue;
+        sights.erase(sights.begin(), sight);
+        return;
     }
-    return sights.front().farthest;
 }
 
 // Where all but a small share of what is seen has not begun.
@@ -207,9 +208,11 @@ SeenRange seenRangeOf(const CascadeCamera& camera, const CullVolume& frustum, st
         else
             found.push_back(*sight);
     }
+    dropSpecks(found, sights.wholePicture());
     addPlanes(planes, sights, parts, travel, found);
     if (found.empty()) return {};
-    SeenRange range = {found[0].nearest, farthestOf(found, sights.wholePicture()), 0.0};
+    dropSpecks(found, sights.wholePicture());
+    SeenRange range = {found[0].nearest, found[0].farthest, 0.0};
     // Of a box around the camera nobody knows where its surfaces are: not many are right before it.
     constexpr double kUnknown = 1.0 / 16.0;
     for (Sight& sight : found) {

@@ -116,6 +116,24 @@ TEST_P(FieldCases, LampsWithinAMillimetre) {
     }
 }
 
+// A light a hundred times as bright makes a picture a hundred times as bright, far beyond what halves hold.
+TEST_P(FieldCases, BrightPictures) {
+    const std::optional<View3d> bright = field("10-bright-pictures-clip/bright1e+06.gltf"),
+                                brighter = field("10-bright-pictures-clip/bright1e+08.gltf");
+    if (!bright || !brighter) GTEST_SKIP() << kNoField;
+    RendererDesc desc = hardDesc(64, 36);
+    desc.floatPicture = true;
+    const auto brightest = [&](View3d view) {
+        view.scene.skyColour = view.scene.groundColour = glm::vec3(0.0f);
+        const HdrPicture picture = drawOnce(device(), view, desc, ShadowMode::Off).linear;
+        return *std::ranges::max_element(picture.rgba);
+    };
+    const float one = brightest(*bright), hundred = brightest(*brighter);
+    EXPECT_GT(one, 1000.0f);
+    EXPECT_GT(hundred, 65504.0f);
+    EXPECT_NEAR(hundred / one, 100.0f, 0.01f);
+}
+
 TEST_P(FieldCases, WideSpots) {
     expectRight(device(), "11-wide-spot-is-a-blob/wide1.05.gltf", 100);
     expectRight(device(), "11-wide-spot-is-a-blob/wide1.5707.gltf", 100);

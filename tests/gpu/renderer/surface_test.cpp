@@ -49,15 +49,21 @@ void expectNear(const glm::vec3& got, const glm::vec3& expected, float tolerance
         << got.x << " " << got.y << " " << got.z << " not " << expected.x << " " << expected.y << " " << expected.z;
 }
 
+// One square, seen from both sides; without instances.
+Scene squareScene() {
+    Scene scene;
+    scene.materials.resize(1);
+    scene.materials[0].doubleSided = true;
+    scene.meshes = {squareMesh()};
+    return scene;
+}
+
 // A square that leans by 40 degrees, pressed into the plane y = 1: 2 m wide and 2 m * cos 40 degrees deep.
 TEST_F(SurfaceTest, FlatInstancesAreDrawn) {
     for (const DeviceInfo& info : suitable()) {
         SCOPED_TRACE(info.name);
         const Device device(instance(), info);
-        Scene scene;
-        scene.materials.resize(1);
-        scene.materials[0].doubleSided = true;
-        scene.meshes = {squareMesh()};
+        Scene scene = squareScene();
         scene.meshes[0].primitives[0].normals.assign(4, {0, 0, 1});
         const auto pressed = [](const glm::vec3& place, const glm::vec3& scale) {
             return glm::translate(glm::mat4(1.0f), place) * glm::scale(glm::mat4(1.0f), scale) * turnedAboutX(-50.0f);
@@ -89,10 +95,7 @@ TEST_F(SurfaceTest, FlatInstancesCast) {
     for (const DeviceInfo& info : suitable()) {
         SCOPED_TRACE(info.name);
         const Device device(instance(), info);
-        Scene scene;
-        scene.materials.resize(1);
-        scene.materials[0].doubleSided = true;
-        scene.meshes = {squareMesh()};
+        Scene scene = squareScene();
         const glm::mat4 flat =
             glm::translate(glm::mat4(1.0f), {0, 1, 0}) * glm::scale(glm::mat4(1.0f), {0.5f, 0, 0.5f});
         scene.instances.push_back({"flat", 0, flat * turnedAboutX(-50.0f)});
@@ -136,10 +139,7 @@ TEST_F(SurfaceTest, FlatInstancesKeepTheirNormals) {
     for (const DeviceInfo& info : suitable()) {
         SCOPED_TRACE(info.name);
         const Device device(instance(), info);
-        Scene scene;
-        scene.materials.resize(1);
-        scene.materials[0].doubleSided = true;
-        scene.meshes = {squareMesh()};
+        Scene scene = squareScene();
         scene.meshes[0].primitives[0].normals.assign(4, {1, 0, 0});
         scene.instances.push_back({"flat", 0, glm::scale(glm::mat4(1.0f), {1, 0, 1}) * turnedAboutX(-50.0f)});
         const Drawn drawn = draw(device, scene, true);

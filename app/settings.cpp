@@ -10,6 +10,7 @@
 
 #include "app/errors.h"
 #include "gpu_interface/numbers.h"
+#include "scene/filter_names.h"
 
 namespace gnomon::app {
 namespace {
@@ -118,18 +119,19 @@ std::vector<Filter> filtersOf(const std::string& text) {
         const std::size_t comma = std::min(text.find(',', at), text.size());
         const std::string name = text.substr(at, comma - at);
         at = comma + 1;
-        if (name != "hard" && name != "pcf" && name != "pcss")
+        const std::optional<Filter> filter = filterNamed(name);
+        if (!filter)
             throw UsageError(
-                fmt::format("There is no shadow filter '{}': choose hard, pcf or pcss, or several as in "
+                fmt::format("There is no shadow filter '{}': choose hard, pcf, pcss or pcss-shared, or several as in "
                             "hard,pcss.",
                             name));
-        filters.push_back(name == "hard" ? Filter::Hard : name == "pcf" ? Filter::Pcf : Filter::Pcss);
+        filters.push_back(*filter);
     }
     return filters;
 }
 
 bool allSoft(const std::vector<Filter>& filters) {
-    return std::ranges::all_of(filters, [](Filter filter) { return filter == Filter::Pcss; });
+    return std::ranges::all_of(filters, isSoft);
 }
 
 void parsePresets(const std::string& text, ShadowSettings& shadows) {
@@ -154,6 +156,7 @@ renderer::FrameSettings frameSettingsOf(const Settings& s) {
     f.shadows.patternPerFrame = s.patternPerFrame;
     f.shadows.visibilityBits = s.visibilityBits;
     f.shadows.shadowBounds = !s.noShadowBounds;
+    f.shadows.lightLists = s.lightLists == "pixel" ? LightLists::Pixel : LightLists::Froxel;
     f.shadows.listReservation = s.reservation == "accurate" ? ListReservation::Accurate
                                 : s.reservation == "fixed"  ? ListReservation::Fixed
                                                             : ListReservation::Approximate;

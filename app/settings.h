@@ -51,6 +51,7 @@ struct Settings {
     std::string depth = "reversed";
     std::string history = "auto";  // "auto": bench has it, others have not
     std::uint32_t listEntries = 0, visibilitySlots = 0, mostListEntries = 0, mostVisibilitySlots = 0;
+    std::string lightLists = "froxel";
     std::string reservation = "accurate";
     std::string device;
     std::uint32_t subgroupSize = 0;

@@ -135,7 +135,7 @@ std::vector<Setting> makeTable() {
          .member = &S::filter,
          .help = "Shadow filter. Several, parted by commas, take turns among the lights",
          .check = checkedBy(filtersOf),
-         .range = "hard, pcf, pcss, or several of them as in hard,pcss"});
+         .range = "hard, pcf, pcss, pcss-shared, or several of them as in hard,pcss"});
     add({.group = kFilter,
          .name = "pcf-radius",
          .key = "pcfRadius",
@@ -270,6 +270,13 @@ std::vector<Setting> makeTable() {
          .member = &S::mostVisibilitySlots,
          .help = "Slots to which the visibility slots may grow by themselves, between frames; 0: they do not grow",
          .most = kMostPoolEntries});
+    add({.group = kPools,
+         .name = "light-lists",
+         .key = "lightLists",
+         .member = &S::lightLists,
+         .help = "Which lights a tile's list holds before shadows are evaluated: froxel: those that may reach the tile; "
+                 "pixel: those that reach a pixel of it, which costs a pass more (the paper's phase 3)",
+         .choices = {"froxel", "pixel"}});
     add({.group = kPools,
          .name = "reservation",
          .key = "reservation",

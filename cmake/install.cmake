@@ -12,7 +12,7 @@ install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # include. gnomon_host_provider.glsl is the host's, and is found nowhere here.
 file(GLOB shaders RELATIVE ${GNOMON_SHADER_INCLUDE_DIR} CONFIGURE_DEPENDS
     src/shading/*.glsl src/visibility/*.glsl src/gpu_interface/*.glsl src/gpu_interface/*.h)
-list(APPEND shaders generate_shadows/generate_shadows.comp)
+list(APPEND shaders generate_shadows/filter_pairs.comp)
 set(to_follow ${shaders})
 while(to_follow)
     list(POP_FRONT to_follow shader)

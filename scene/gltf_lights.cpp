@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
 
+#include "scene/filter_names.h"
 #include "scene/pose.h"
 
 namespace gnomon::renderer::gltf {
@@ -75,8 +76,7 @@ void addLight(Document& document, const PlacedNode& node, Scene& scene) {
             refuse("{} has the sourceRadius {}", user, light.sourceRadius);
     }
     if (const tinygltf::Value* filter = member(source.extras, "shadowFilter")) {
-        const auto& name = filter->Get<std::string>();
-        light.filter = name == "hard" ? Filter::Hard : name == "pcf" ? Filter::Pcf : Filter::Pcss;
+        light.filter = filterNamed(filter->Get<std::string>());
     }
     scene.lights.push_back(std::move(light));
 }

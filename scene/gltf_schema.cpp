@@ -168,7 +168,7 @@ constexpr Property kCamera[] = {text("name"), word("type", kCameraTypes), object
 
 constexpr std::string_view kLightTypes[] = {"point", "spot", "directional"};
 constexpr Property kSpot[] = {number("innerConeAngle"), number("outerConeAngle")};
-constexpr std::string_view kShadowFilters[] = {"hard", "pcf", "pcss"};
+constexpr std::string_view kShadowFilters[] = {"hard", "pcf", "pcss", "pcss-shared"};
 constexpr Property kLightExtras[] = {number("shadowBiasMetres"), word("shadowFilter", kShadowFilters),
                                      number("sourceRadius")};
 constexpr Property kLight[] = {text("name"),    word("type", kLightTypes), numbers("color", 3), number("intensity"),

@@ -1,4 +1,5 @@
 #include "scene/lights_as_gltf.h"
+#include "scene/filter_names.h"
 
 #include <algorithm>
 #include <charconv>
@@ -36,10 +37,6 @@ glm::dquat rotationTo(const glm::vec3& direction) {
     return glm::normalize(glm::dquat(w, axis.x, axis.y, axis.z));
 }
 
-const char* filterName(Filter filter) {
-    return filter == Filter::Hard ? "hard" : filter == Filter::Pcf ? "pcf" : "pcss";
-}
-
 Json definitionOf(const SceneLight& light) {
     const float brightest = std::max({light.colour.r, light.colour.g, light.colour.b, 1.0f});
     Json out = {{"name", light.name},
@@ -56,7 +53,7 @@ Json definitionOf(const SceneLight& light) {
     Json extras = Json::object();
     if (light.sourceRadius > 0.0f) extras["sourceRadius"] = shortDecimal(light.sourceRadius);
     if (light.biasMetres >= 0.0f) extras["shadowBiasMetres"] = shortDecimal(light.biasMetres);
-    if (light.filter) extras["shadowFilter"] = filterName(*light.filter);
+    if (light.filter) extras["shadowFilter"] = nameOf(*light.filter);
     if (!extras.empty()) out["extras"] = std::move(extras);
     return out;
 }

@@ -97,7 +97,7 @@ std::optional<PassNeed> needOf(const std::string& pass, const FrameCounts& c, co
     if (pass == "find_lights_approximate") return ranges + masks + lights(c) + groupMasks + listWords(c, 1);  // counts
     if (pass == "find_lights_accurate")  // approximate counts; SlotIDs and early counts
         return receivers(c, true) + ranges + masks + groupMasks + lights(c) + listWords(c, 3) + earlyList(c);
-    if (pass == "generate_shadows")  // SlotIDs and early counts; final counts
+    if (pass == "filter_pairs")  // SlotIDs and early counts; final counts
         return receivers(c, true) + lights(c) + listWords(c, 3) + earlyList(c) + shadows(c, samples) + finalList(c);
     if (pass == "lighting") return receivers(c, false) + surfaces(c) + lights(c) + listWords(c, 2) + finalList(c);
     if (pass == "lighting_inline")

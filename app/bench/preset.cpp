@@ -133,7 +133,7 @@ void printTable2(const Measurement& measured) {
                "to hardware, no normals", "normals read");
     for (const BiasRow& row : kPaperTable2) {
         const Variant& variant = *find(measured.variants, row.variant);
-        const Variant::Row* filter = variant.pass("generate_shadows");
+        const Variant::Row* filter = variant.pass("filter_pairs");
         fmt::print("{:<34} {:>10.4f} {:>16.4f} {:>22.1f}% {:>11.1f}%\n", row.name, shadowMs(measured, row),
                    filter != nullptr ? spreadOf(filter->milliseconds).median : 0.0,
                    changeOf(shadowMs(measured, row), shadowMs(measured, kPaperTable2[0])),

@@ -19,7 +19,7 @@ FilterSamples samplesOf(const renderer::FrameSettings& settings) {
     for (const Filter filter : settings.filters) {
         if (filter == Filter::Hard) samples.fetches += share;
         if (filter == Filter::Pcf) samples.gathers += share * (shadows.pcfRadius + 1.0) * (shadows.pcfRadius + 1.0);
-        if (filter != Filter::Pcss) continue;
+        if (!isSoft(filter)) continue;
         for (std::uint32_t i = 0; i < shadows.pcssPresetCount; ++i) {
             samples.gathers += share * shadows.pcssPresets[i].searchTaps / shadows.pcssPresetCount;
             samples.gathersIfMixed += share * shadows.pcssPresets[i].filterTaps / shadows.pcssPresetCount;

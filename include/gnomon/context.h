@@ -15,7 +15,7 @@
 namespace gnomon {
 
 /// Needs Vulkan 1.3 with synchronization2, and computeFullSubgroups and subgroupSizeControl enabled; subgroup
-/// operations (basic, arithmetic) in compute shaders; 17 storage buffers per stage; for debugLabels VK_EXT_debug_utils
+/// operations (basic, arithmetic) in compute shaders; 20 storage buffers per stage; for debugLabels VK_EXT_debug_utils
 /// on the instance.
 struct ContextDesc {
     VkInstance instance = VK_NULL_HANDLE;
@@ -32,15 +32,15 @@ struct ContextDesc {
     std::uint32_t subgroupSize = 0;
     /// 1 to 4: atlases that a frame may have. With one, shaders need not choose at every tap.
     std::uint32_t maxShadowAtlases = 4;
-    /// Optional SPIR-V of src/generate_shadows/generate_shadows.comp, compiled by the host with
+    /// Optional SPIR-V of src/generate_shadows/filter_pairs.comp, compiled by the host with
     /// -DGNOMON_HOST_PROVIDER and a gnomon_host_provider.glsl on the include path, for lights with Filter::Host: see
     /// docs/integration.md. Copied.
-    std::span<const std::uint32_t> generateShadowsSpirv;
+    std::span<const std::uint32_t> filterPairsSpirv;
 };
 
 /// Values of the library's specialization constants. Constant `id` has the id-th value, four bytes.
 struct SpecializationValues {
-    static constexpr std::uint32_t kCount = 10;
+    static constexpr std::uint32_t kCount = 12;
     std::array<std::uint32_t, kCount> values = {};
     bool operator==(const SpecializationValues&) const = default;
 };

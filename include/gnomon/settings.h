@@ -16,17 +16,26 @@ enum class Filter : std::uint8_t {
     Hard,  ///< one texel, one comparison
     Pcf,   ///< percentage closer filtering over (2 * pcfRadius + 1)^2 bilinear comparisons
     Pcss,  ///< percentage closer soft shadows: a penumbra as wide as the light's source makes it
-    Host,  ///< a function of the host's own; needs ContextDesc::generateShadowsSpirv
+    Host,  ///< a function of the host's own; needs ContextDesc::filterPairsSpirv
+    /// Like Pcss, but 2x2 pixels share one search for blockers, and narrow penumbrae take fewer taps. Faster. Forward
+    /// surfaces have no such neighbours: give them Filter::Pcss.
+    PcssShared,
 };
+
+/// Whether a filter makes a penumbra as wide as the light's source: those that PcssTaps are for.
+constexpr bool isSoft(Filter filter) noexcept {
+    return filter == Filter::Pcss || filter == Filter::PcssShared;
+}
 
 /// A set of filters, one bit each.
 using FilterSet = std::uint32_t;
 constexpr FilterSet only(Filter filter) noexcept {
     return 1u << static_cast<std::uint32_t>(filter);
 }
-inline constexpr FilterSet kAllBuiltInFilters = only(Filter::Hard) | only(Filter::Pcf) | only(Filter::Pcss);
+inline constexpr FilterSet kAllBuiltInFilters =
+    only(Filter::Hard) | only(Filter::Pcf) | only(Filter::Pcss) | only(Filter::PcssShared);
 
-/// Taps of Filter::Pcss, each a gather of four texels. A pixel outside of penumbrae takes searchTaps at most, one
+/// Taps of Filter::Pcss and Filter::PcssShared, each a gather of four texels. A pixel outside of penumbrae takes searchTaps at most, one
 /// inside also filterTaps.
 struct PcssTaps {
     std::uint32_t searchTaps = 16;  ///< 1 to 64
@@ -51,10 +60,18 @@ enum class DepthBias : std::uint8_t {
     Unbiased,
 };
 
+/// Which lights a tile's list holds before phase 4.
+enum class LightLists : std::uint8_t {
+    Froxel,  ///< those that may reach the tile's froxel. Phase 2 writes them, and phase 3 does nothing.
+    Pixel,   ///< those that reach a pixel of the tile: the paper's phase 3. Fewer lights, but slower in all.
+};
+
 /// How space in the light lists is given out.
 enum class ListReservation : std::uint8_t {
     Approximate,  ///< the paper's way: by phase 2, one atomic per 64 tiles, as much as the approximate count
-    Accurate,     ///< by phase 3, one atomic per tile, as much as the exact count
+    /// By the phase that writes the lists, as much as the exact count. With LightLists::Froxel it is the same as
+    /// Approximate; with LightLists::Pixel it takes one atomic per tile.
+    Accurate,
     Fixed,        ///< debugging: fixedListEntriesPerTile for every tile, at predictable addresses
 };
 
@@ -76,7 +93,7 @@ struct ShadowSettings {
     /// A pixel whose face looks away from a light is dark, and the light's shadowmaps are not asked. This does not hold
     /// for subsurface pixels. Where it is off, with DepthBias::Unbiased, face normals are not read at all.
     bool facedAwayIsDark = true;
-    /// Phase 3 drops lights that every pixel of a tile looks away from, with facedAwayIsDark.
+    /// Phase 3, where it runs, drops lights that every pixel of a tile looks away from, with facedAwayIsDark.
     bool dropLightsFacedAway = true;
     /// Subsurface pixels move toward the light by this many metres, if it is more than the light's own bias. 0 is right
     /// where subsurface casters are drawn without the faces that look at the light. Where these faces are drawn too, it
@@ -84,6 +101,7 @@ struct ShadowSettings {
     float subsurfaceBiasMetres = 0.02f;
     /// Bits of a pixel's visibility in a slot: 8, or 4 for half the memory and an error of up to 0.066.
     std::uint32_t visibilityBits = 8;
+    LightLists lightLists = LightLists::Froxel;
     ListReservation listReservation = ListReservation::Accurate;
     std::uint32_t fixedListEntriesPerTile =
         0;  ///< for ListReservation::Fixed, 1 to 1024; rounded up to a multiple of 3

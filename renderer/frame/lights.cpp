@@ -42,7 +42,7 @@ std::vector<Light> libraryLights(std::span<const SceneLight> lights, const glm::
                                  const FrameSettings& settings) {
     std::vector<Light> out;
     out.reserve(lights.size());
-    std::uint32_t soft = 0;  // lights of Filter::Pcss so far: presets take turns among them alone
+    std::uint32_t soft = 0;  // lights with soft shadows so far: presets take turns among them alone
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const SceneLight& light = lights[i];
         Light l;
@@ -57,7 +57,7 @@ std::vector<Light> libraryLights(std::span<const SceneLight> lights, const glm::
         l.biasMetres = statedBias(light, settings).value_or(kBiasMetres);
         l.casts = light.casts;
         l.filter = filterOf(light, i, settings);
-        if (l.filter == Filter::Pcss)
+        if (isSoft(l.filter))
             l.pcssPreset = static_cast<std::uint8_t>(soft++ % settings.shadows.pcssPresetCount);
         out.push_back(l);
     }
@@ -71,7 +71,7 @@ ShadowSettings librarySettings(std::span<const SceneLight> lights, const FrameSe
     for (const SceneLight& light : lights)
         if (light.filter) out.filters |= only(*light.filter);
     // Without PCSS nothing asks the bounds.
-    out.shadowBounds = out.shadowBounds && (out.filters & only(Filter::Pcss)) != 0;
+    out.shadowBounds = out.shadowBounds && (out.filters & (only(Filter::Pcss) | only(Filter::PcssShared))) != 0;
     out.subsurfaceBiasMetres = settings.drawing.subsurfaceFronts ? settings.subsurfaceBiasMetres : 0.0f;
     return out;
 }

@@ -38,6 +38,7 @@ vec3 shadeLights(Surface surface, Receiver receiver, uvec2 pixel, TileLights til
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < tile.count; ++i) {
         uint entry = tileLightEntry(tile, i);
+        if (isAllUnlit(entry)) continue;
         GpuLight light = lights[finalLightIndex(entry)];
         vec3 toLight;
         if (!lightReaches(light, receiver.positionWs, receiver.mask, toLight)) continue;

@@ -149,13 +149,20 @@ Specialization Context::State::specializationOf(const ShadowSettings& settings) 
     return values;
 }
 
-Result Context::State::pipelinesFor(const ShadowSettings& settings, PassPipelines& out) {
+QueueSet queuesOf(FilterSet filters) noexcept {
+    QueueSet queues = 0;
+    for (std::uint32_t queue = 0; queue < kPairQueueCount; ++queue)
+        queues |= (filters >> queue / kShadowViewsKinds & 1u) << queue;
+    return queues;
+}
+
+Result Context::State::pipelinesFor(const ShadowSettings& settings, QueueSet queues, PassPipelines& out) {
     if (Result checked = checkSettings(settings); !checked) return checked;
     if ((settings.filters & only(Filter::Host)) != 0 && !hostProvider) {
         return Result::failure(Status::BadArgument,
-                               "ShadowSettings::filters has Filter::Host: it needs ContextDesc::generateShadowsSpirv.");
+                               "ShadowSettings::filters has Filter::Host: it needs ContextDesc::filterPairsSpirv.");
     }
-    return pipelines.get(specializationOf(settings), out);
+    return pipelines.get(specializationOf(settings), queues, out);
 }
 
 Context::Context(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
@@ -176,14 +183,14 @@ Result Context::create(const ContextDesc& desc, std::unique_ptr<Context>& out) n
         }
         readDevice(*state, desc);
         state->maxShadowAtlases = desc.maxShadowAtlases;
-        state->hostProvider = !desc.generateShadowsSpirv.empty();
+        state->hostProvider = !desc.filterPairsSpirv.empty();
         if (Result made = createLayouts(*state); !made) return made;
         Pipelines::Desc pipelines;
         pipelines.cache = desc.pipelineCache;
         pipelines.layout = state->pipelineLayout;
         pipelines.subgroupSize = state->subgroupSize;
         pipelines.requireSubgroupSize = state->requireSubgroupSize;
-        pipelines.generateShadowsSpirv.assign(desc.generateShadowsSpirv.begin(), desc.generateShadowsSpirv.end());
+        pipelines.filterPairsSpirv.assign(desc.filterPairsSpirv.begin(), desc.filterPairsSpirv.end());
         state->pipelines.create(state->device, std::move(pipelines));
         out.reset(new Context(std::move(state)));
         return {};
@@ -195,7 +202,7 @@ Result Context::create(const ContextDesc& desc, std::unique_ptr<Context>& out) n
 Result Context::prepare(const ShadowSettings& settings) const noexcept {
     try {
         PassPipelines unused = {};
-        return state_->pipelinesFor(settings, unused);
+        return state_->pipelinesFor(settings, queuesOf(settings.filters), unused);
     } catch (const std::bad_alloc&) {
         return Result::failure(Status::OutOfMemory, "Out of memory while making pipelines.");
     }

@@ -6,7 +6,9 @@
 
 #include "find_lights_accurate/find_lights_accurate.h"
 #include "find_lights_approximate/find_lights_approximate.h"
-#include "generate_shadows/generate_shadows.h"
+#include "generate_shadows/classify_pairs.h"
+#include "generate_shadows/filter_pairs.h"
+#include "generate_shadows/search_pairs.h"
 #include "hierarchical_depth/hierarchical_depth.h"
 #include "shadow_bounds/shadow_bounds.h"
 #include "statistics/gather_statistics.h"
@@ -18,7 +20,9 @@ enum PassId : std::uint32_t {
     kPassFindLightsApproximate,
     kPassFindLightsAccurate,
     kPassShadowBounds,
-    kPassGenerateShadows,
+    kPassClassifyPairs,
+    kPassSearchPairs,
+    kPassFilterPairs,
     kPassGatherStatistics,
     kPassCount,
 };
@@ -26,7 +30,8 @@ enum PassId : std::uint32_t {
 using PassDeclaration = const Pass& (*)() noexcept;
 inline constexpr PassDeclaration kPasses[] = {
     hierarchicalDepthPass, findLightsApproximatePass, findLightsAccuratePass,
-    shadowBoundsPass,      generateShadowsPass,       gatherStatisticsPass,
+    shadowBoundsPass,      classifyPairsPass,         searchPairsPass,         filterPairsPass,
+    gatherStatisticsPass,
 };
 static_assert(std::size(kPasses) == kPassCount);
 

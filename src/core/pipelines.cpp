@@ -27,31 +27,48 @@ VkPipeline Pipelines::find(PassId pass, const Values& values) const noexcept {
     return VK_NULL_HANDLE;
 }
 
-Result Pipelines::get(const gpu::Specialization& specialization, PassPipelines& out) {
-    const auto all = std::bit_cast<Values>(specialization);
-    for (std::uint32_t i = 0; i < kPassCount; ++i) {
-        const auto pass = static_cast<PassId>(i);
-        Values values = {};
-        for (const std::uint32_t id : passOf(pass).specialization) values[id] = all[id];
-        out[i] = find(pass, values);
-        if (out[i] != VK_NULL_HANDLE) continue;
-        VkPipeline made = VK_NULL_HANDLE;
-        if (Result result = make(pass, values, made); !result) return result;
-        // Another thread may have made the same one meanwhile: the first one stays.
-        const std::scoped_lock lock(mutex_);
-        for (const Entry& entry : entries_)
-            if (entry.pass == pass && entry.values == values) out[i] = entry.pipeline;
-        if (out[i] != VK_NULL_HANDLE) {
-            device_->vk.DestroyPipeline(device_->device, made, nullptr);
-            continue;
-        }
-        try {
-            entries_.push_back({pass, values, made});
-        } catch (...) {
-            device_->vk.DestroyPipeline(device_->device, made, nullptr);
-            throw;
-        }
-        out[i] = made;
+// `all`: values of all constants, of which the pass may not have some.
+Result Pipelines::getOne(PassId pass, const Values& all, VkPipeline& out) {
+    Values values = {};
+    for (const std::uint32_t id : passOf(pass).specialization) values[id] = all[id];
+    out = find(pass, values);
+    if (out != VK_NULL_HANDLE) return {};
+    VkPipeline made = VK_NULL_HANDLE;
+    if (Result result = make(pass, values, made); !result) return result;
+    // Another thread may have made the same one meanwhile: the first one stays.
+    const std::scoped_lock lock(mutex_);
+    for (const Entry& entry : entries_)
+        if (entry.pass == pass && entry.values == values) out = entry.pipeline;
+    if (out != VK_NULL_HANDLE) {
+        device_->vk.DestroyPipeline(device_->device, made, nullptr);
+        return {};
+    }
+    try {
+        entries_.push_back({pass, values, made});
+    } catch (...) {
+        device_->vk.DestroyPipeline(device_->device, made, nullptr);
+        throw;
+    }
+    out = made;
+    return {};
+}
+
+Result Pipelines::get(const gpu::Specialization& specialization, QueueSet queues, PassPipelines& out) {
+    out = {};
+    for (std::uint32_t pass = 0; pass < kPassCount; ++pass) {
+        if (pass == kPassSearchPairs || pass == kPassFilterPairs) continue;
+        const Result got = getOne(static_cast<PassId>(pass), std::bit_cast<Values>(specialization), out.once[pass]);
+        if (!got) return got;
+    }
+    for (std::uint32_t queue = 0; queue < gpu::kPairQueueCount; ++queue) {
+        if ((queues >> queue & 1u) == 0) continue;
+        gpu::Specialization own = specialization;
+        own.filters = 1u << queue / gpu::kShadowViewsKinds;
+        own.shadowViews = queue % gpu::kShadowViewsKinds + 1;
+        const auto values = std::bit_cast<Values>(own);
+        if (Result got = getOne(kPassFilterPairs, values, out.filterPairs[queue]); !got) return got;
+        if (queue / gpu::kShadowViewsKinds != gpu::kFilterPcssShared) continue;
+        if (Result got = getOne(kPassSearchPairs, values, out.searchPairs[queue]); !got) return got;
     }
     return {};
 }
@@ -60,7 +77,7 @@ Result Pipelines::make(PassId id, const Values& values, VkPipeline& out) const {
     const Functions& vk = device_->vk;
     const Pass& pass = passOf(id);
     std::span<const std::uint32_t> spirv = pass.spirv;
-    if (id == kPassGenerateShadows && !desc_.generateShadowsSpirv.empty()) spirv = desc_.generateShadowsSpirv;
+    if (id == kPassFilterPairs && values[gpu::kSpecFilters] == 1u << gpu::kFilterHost) spirv = desc_.filterPairsSpirv;
     VkShaderModuleCreateInfo module = {VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
     module.codeSize = spirv.size_bytes();
     module.pCode = spirv.data();

@@ -12,8 +12,16 @@
 
 namespace gnomon {
 
-// The pipelines of one frame, by PassId.
-using PassPipelines = std::array<VkPipeline, kPassCount>;
+// A set of pair queues (gpu::pairQueueOf()), one bit each.
+using QueueSet = std::uint32_t;
+static_assert(gpu::kPairQueueCount <= 32);
+
+// The pipelines of one frame.
+struct PassPipelines {
+    std::array<VkPipeline, kPassCount> once = {};  // by PassId, of passes that are made once
+    // By queue, of passes that are made once per queue; null for queues that were not asked for.
+    std::array<VkPipeline, gpu::kPairQueueCount> searchPairs = {}, filterPairs = {};
+};
 
 // Thread safe. Destroyed by destroy().
 class Pipelines {
@@ -22,14 +30,14 @@ public:
         VkPipelineCache cache = VK_NULL_HANDLE;
         VkPipelineLayout layout = VK_NULL_HANDLE;
         std::uint32_t subgroupSize = 0;
-        bool requireSubgroupSize = false;                 // else the device has no other
-        std::vector<std::uint32_t> generateShadowsSpirv;  // the host's own, in place of the pass's
+        bool requireSubgroupSize = false;             // else the device has no other
+        std::vector<std::uint32_t> filterPairsSpirv;  // the host's own, for Filter::Host
     };
     void create(const DeviceContext& device, Desc desc);  // moves; no failure
     void destroy() noexcept;
 
-    // Fills `out`; makes what is missing. Throws std::bad_alloc.
-    Result get(const gpu::Specialization& values, PassPipelines& out);
+    // Fills `out`, for these queues; makes what is missing. Throws std::bad_alloc.
+    Result get(const gpu::Specialization& values, QueueSet queues, PassPipelines& out);
     [[nodiscard]] std::uint32_t count() const noexcept;
 
 private:
@@ -40,6 +48,7 @@ private:
         VkPipeline pipeline;
     };
     [[nodiscard]] VkPipeline find(PassId pass, const Values& values) const noexcept;
+    Result getOne(PassId pass, const Values& all, VkPipeline& out);
     Result make(PassId pass, const Values& values, VkPipeline& out) const;
 
     const DeviceContext* device_ = nullptr;

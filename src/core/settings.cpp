@@ -11,6 +11,9 @@ static_assert(static_cast<std::uint32_t>(Filter::Hard) == kFilterHard);
 static_assert(static_cast<std::uint32_t>(Filter::Pcf) == kFilterPcf);
 static_assert(static_cast<std::uint32_t>(Filter::Pcss) == kFilterPcss);
 static_assert(static_cast<std::uint32_t>(Filter::Host) == kFilterHost);
+static_assert(static_cast<std::uint32_t>(Filter::PcssShared) == kFilterPcssShared);
+static_assert(static_cast<std::uint32_t>(LightLists::Froxel) == kListsByFroxel);
+static_assert(static_cast<std::uint32_t>(LightLists::Pixel) == kListsByPixel);
 static_assert(gnomon::kMaxPcssPresets == gpu::kMaxPcssPresets);
 static_assert(static_cast<std::uint32_t>(DepthBias::Oriented) == kDepthBiasOriented);
 static_assert(static_cast<std::uint32_t>(DepthBias::OrientedConstant) == kDepthBiasOrientedConstant);
@@ -61,6 +64,9 @@ Result checkSettings(const ShadowSettings& s) noexcept {
         return Result::failure(Status::BadArgument, "ShadowSettings::visibilityBits is %u; it must be 8 or 4.",
                                s.visibilityBits);
     }
+    if (static_cast<std::uint32_t>(s.lightLists) > kListsByPixel) {
+        return Result::failure(Status::BadArgument, "ShadowSettings::lightLists is none of LightLists.");
+    }
     if (static_cast<std::uint32_t>(s.listReservation) > kReserveFixed) {
         return Result::failure(Status::BadArgument, "ShadowSettings::listReservation is none of ListReservation.");
     }
@@ -77,6 +83,7 @@ Specialization specializationOf(const ShadowSettings& s) noexcept {
     Specialization out = {};
     out.filters = s.filters;
     out.listReservation = static_cast<std::uint32_t>(s.listReservation);
+    out.lightLists = static_cast<std::uint32_t>(s.lightLists);
     out.pcfRadius = s.pcfRadius;
     out.hostDepthPyramid = s.hostDepthPyramid ? 1u : 0u;
     out.pcssPresets = s.pcssPresetCount;

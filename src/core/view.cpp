@@ -146,7 +146,7 @@ Result checkCasters(const View::State& state, const FrameDesc& frame) {
             return Result::failure(Status::BadArgument, "Light %u: its filter is not among ShadowSettings::filters.",
                                    light.light);
         }
-        if (light.filter == Filter::Pcss && light.pcssPreset >= frame.settings.pcssPresetCount) {
+        if (isSoft(light.filter) && light.pcssPreset >= frame.settings.pcssPresetCount) {
             return Result::failure(Status::BadArgument,
                                    "Light %u: its pcssPreset is %u; ShadowSettings::pcssPresetCount is %u.",
                                    light.light, light.pcssPreset, frame.settings.pcssPresetCount);
@@ -159,6 +159,21 @@ Result checkCasters(const View::State& state, const FrameDesc& frame) {
         }
     }
     return {};
+}
+
+// The pair queues that the frame's lights may fill. Bad input is refused later.
+QueueSet queuesOfFrame(const View::State& state, const FrameDesc& frame) {
+    QueueSet queues = 0;
+    const std::size_t lights = std::min(frame.lightViews.size(), state.prepared.visible.size());
+    for (std::size_t i = 0; i < lights; ++i) {
+        const LightOnScreen& light = state.prepared.visible[i];
+        const LightShadowViews& views = frame.lightViews[i];
+        if (!light.casts || views.first == kNoShadowViews) continue;
+        std::uint32_t kind = views.count == kPointLightFaces ? kShadowViewsSixFaces : kShadowViewsOne;
+        if (light.type == LightType::Directional) kind = kShadowViewsCascades;
+        queues |= 1u << pairQueueOf(static_cast<std::uint32_t>(light.filter), kind);
+    }
+    return queues & queuesOf(frame.settings.filters);
 }
 
 void completeFrameConstants(const FrameInFlight& inFlight, const FrameDesc& frame, GpuFrame& constants) {
@@ -371,8 +386,9 @@ Result View::beginFrame(const FrameDesc& frame, PrepareReport* report) noexcept 
     if (Result checked = checkFrame(state, frame); !checked) return checked;
     const auto index = static_cast<std::uint32_t>(frame.frameNumber % state.desc.framesInFlight);
     FrameInFlight& inFlight = state.frames[index];
+    const QueueSet queues = queuesOfFrame(state, frame);
     try {
-        if (Result found = state.context->pipelinesFor(frame.settings, state.pipelines); !found) return found;
+        if (Result found = state.context->pipelinesFor(frame.settings, queues, state.pipelines); !found) return found;
     } catch (const std::bad_alloc&) {
         return Result::failure(Status::OutOfMemory, "Out of memory while beginning a frame.");
     }
@@ -417,6 +433,7 @@ Result View::beginFrame(const FrameDesc& frame, PrepareReport* report) noexcept 
     inFlight.frameNumber = frame.frameNumber;
     state.frame = constants;
     state.current = index;
+    state.queues = queues;
     state.timeline = frame.timeline;
     state.lastFrame = frame.frameNumber;
     state.anyFrame = true;

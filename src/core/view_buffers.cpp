@@ -27,6 +27,9 @@ constexpr ViewBuffer kBuffers[kViewBufferCount] = {
     {"visibility", BufferKind::Device, kSetLists, kBindVisibility},
     {"evaluate_tiles", BufferKind::Device, kSetLists, kBindEvaluateTiles},
     {"counters", BufferKind::Device, kSetWorking, kBindCounters},
+    {"list_tiles", BufferKind::Device, kSetWorking, kBindListTiles},
+    {"pair_queues", BufferKind::Device, kSetWorking, kBindPairQueues},
+    {"queued_pairs", BufferKind::Device, kSetWorking, kBindQueuedPairs},
     {"shadow_views", BufferKind::Streamed, kSetShadowmaps, kBindShadowViews},
     {"shadow_bounds", BufferKind::Device, kSetShadowmaps, kBindShadowBounds},
     {"shadow_bounds_cells", BufferKind::Streamed, kSetWorking, kBindShadowBoundsCells},
@@ -40,7 +43,7 @@ Result makeBuffer(const DeviceContext& context, const ViewDesc& desc, ViewBuffer
         case BufferKind::Device: {
             VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                                        VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-            if (id == kBufferEvaluateTiles) usage |= VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+            if (id == kBufferEvaluateTiles || id == kBufferPairQueues) usage |= VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
             return createBuffer(context, decl.name, bytes + 2 * VkDeviceSize(desc.guardBytes), usage, MemoryUse::Device,
                                 out);
         }
@@ -109,7 +112,7 @@ ViewSizes viewSizesOf(const DeviceContext& device, const ViewDesc& desc) noexcep
     const std::uint64_t wantedEntries = desc.listEntries != 0 ? desc.listEntries : tiles * kDefaultListEntriesPerTile;
     const std::uint64_t wantedSlots =
         desc.visibilitySlots != 0 ? desc.visibilitySlots : tiles * kDefaultVisibilitySlotsPerTile;
-    const std::uint64_t entries = std::min<std::uint64_t>({wantedEntries, largest / 4, 0x7FFFFFFFu});
+    const std::uint64_t entries = std::min<std::uint64_t>({wantedEntries, largest / 8, 0x7FFFFFFFu});
     const std::uint64_t slots = std::min<std::uint64_t>({wantedSlots, largest / slotBytes, kMaxVisibilitySlots});
     s.poolsCapped = entries < wantedEntries || slots < wantedSlots;
     // Whole early-list words: what is left of a pool of one or two entries cannot hold a list.
@@ -132,6 +135,9 @@ ViewSizes viewSizesOf(const DeviceContext& device, const ViewDesc& desc) noexcep
     s.bytes[kBufferVisibility] = s.visibilitySlots * slotBytes;
     s.bytes[kBufferEvaluateTiles] = sizeof(GpuEvaluateHead) + tiles * 4;
     s.bytes[kBufferCounters] = sizeof(GpuCounters);
+    s.bytes[kBufferListTiles] = s.bytes[kBufferEarlyList];
+    s.bytes[kBufferPairQueues] = sizeof(GpuPairHead);
+    s.bytes[kBufferQueuedPairs] = 2 * s.bytes[kBufferFinalList];
     s.bytes[kBufferShadowViews] = VkDeviceSize(desc.maxShadowViews) * sizeof(GpuShadowView);
     // At least one cell, so that there is a buffer to bind.
     const std::uint64_t mostCells = largest / shadowBoundsBytes(1);

@@ -18,12 +18,41 @@ Recorder recorderOf(View::State& state, VkCommandBuffer commands) {
     return {state.context->device, commands, state.tracker, state.timeline};
 }
 
-void recordPass(View::State& state, VkCommandBuffer commands, PassId id, std::uint32_t x, std::uint32_t y) {
+std::array<BoundSet, kSetCount> setsOf(View::State& state) {
     std::array<BoundSet, kSetCount> sets;
     for (std::uint32_t set = 0; set < kSetCount; ++set)
         sets[set] = {state.frames[state.current].sets[set], state.uses[set]};
-    recorderOf(state, commands)
-        .dispatch(passOf(id), state.pipelines[id], state.context->pipelineLayout, sets, {.x = x, .y = y});
+    return sets;
+}
+
+void recordPass(View::State& state, VkCommandBuffer commands, PassId id, std::span<const Dispatch> dispatches) {
+    recorderOf(state, commands).dispatch(passOf(id), state.context->pipelineLayout, setsOf(state), dispatches);
+}
+
+void recordPass(View::State& state, VkCommandBuffer commands, PassId id, std::uint32_t x, std::uint32_t y) {
+    const Dispatch dispatch = {.pipeline = state.pipelines.once[id], .x = x, .y = y};
+    recordPass(state, commands, id, {&dispatch, 1});
+}
+
+// Where a member of GpuPairHead lies in its buffer.
+VkDeviceSize pairHeadOffset(const View::State& state, std::size_t member) {
+    return state.desc.guardBytes + member;
+}
+
+// One indirect dispatch for every queue that has a pipeline, with the command at `command` in GpuPairQueue. Queues
+// share nothing but counters, so no barrier stands between them.
+void recordQueues(View::State& state, VkCommandBuffer commands, PassId id,
+                  const std::array<VkPipeline, kPairQueueCount>& pipelines, std::size_t command) {
+    Dispatch dispatches[kPairQueueCount];
+    std::size_t count = 0;
+    for (std::uint32_t queue = 0; queue < kPairQueueCount; ++queue) {
+        if (pipelines[queue] == VK_NULL_HANDLE) continue;
+        Dispatch& dispatch = dispatches[count++];
+        dispatch.pipeline = pipelines[queue];
+        dispatch.indirect = state.buffers.device[kBufferPairQueues].buffer;
+        dispatch.offset = pairHeadOffset(state, offsetof(GpuPairHead, queues) + queue * sizeof(GpuPairQueue) + command);
+    }
+    if (count != 0) recordPass(state, commands, id, {dispatches, count});
 }
 
 // Images that are bound but never read still need the layout that their descriptor names. This is recorded in every
@@ -67,13 +96,21 @@ void resetFrame(View::State& state, VkCommandBuffer commands) {
     GpuEvaluateHead head = {};
     head.groupCountX = kEvaluateRowTiles;
     head.groupCountZ = 1;
+    GpuPairHead pairHead = {};
+    pairHead.classifyGroupCountX = kPairRowGroups;
+    pairHead.classifyGroupCountZ = 1;
+    for (GpuPairQueue& queue : pairHead.queues) {
+        queue.searchGroupCountX = queue.filterGroupCountX = kPairRowGroups;
+        queue.searchGroupCountZ = queue.filterGroupCountZ = 1;
+    }
     const VkDeviceSize offset = state.desc.guardBytes;
+    vk.CmdUpdateBuffer(commands, state.buffers.device[kBufferPairQueues].buffer, offset, sizeof(pairHead), &pairHead);
     vk.CmdUpdateBuffer(commands, state.buffers.device[kBufferCounters].buffer, offset, sizeof(counters), &counters);
     vk.CmdUpdateBuffer(commands, state.buffers.device[kBufferEvaluateTiles].buffer, offset, sizeof(head), &head);
     recorder.barrier(VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, kCompute, kStorageAccess);
 }
 
-// A frame without phase 4 has no final lists; what an earlier frame left must not be counted.
+// A frame without phase 4 has no final lists.
 void clearFinalCounts(View::State& state, VkCommandBuffer commands) {
     const Functions& vk = state.context->device.vk;
     Recorder recorder = recorderOf(state, commands);
@@ -81,6 +118,11 @@ void clearFinalCounts(View::State& state, VkCommandBuffer commands) {
                      VK_ACCESS_2_TRANSFER_WRITE_BIT);
     vk.CmdFillBuffer(commands, state.buffers.device[kBufferFinalCounts].buffer, state.desc.guardBytes,
                      state.sizes.bytes[kBufferFinalCounts], 0);
+    GpuEvaluateHead head = {};
+    head.groupCountX = kEvaluateRowTiles;
+    head.groupCountZ = 1;
+    vk.CmdUpdateBuffer(commands, state.buffers.device[kBufferEvaluateTiles].buffer, state.desc.guardBytes, sizeof(head),
+                       &head);
     recorder.barrier(VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, kCompute, kStorageAccess);
 }
 
@@ -95,8 +137,9 @@ void View::recordHierarchicalDepth(VkCommandBuffer commands) noexcept {
     State& state = *state_;
     resetFrame(state, commands);
     const GpuFrame& f = state.frame;
-    // With the host's pyramid one lane per tile instead of one per pixel.
-    const uvec2 groups = state.frames[state.current].settings.hostDepthPyramid ? f.tileGroupCounts : f.tileCounts;
+    // With the host's pyramid one lane per tile.
+    uvec2 groups = {divideRoundingUp(f.tileCounts.x, kDepthTilesPerGroup), f.tileCounts.y};
+    if (state.frames[state.current].settings.hostDepthPyramid) groups = f.tileGroupCounts;
     recordPass(state, commands, kPassHierarchicalDepth, groups.x, groups.y);
 }
 
@@ -106,9 +149,11 @@ void View::recordFindLightsApproximate(VkCommandBuffer commands) noexcept {
 }
 
 void View::recordFindLightsAccurate(VkCommandBuffer commands) noexcept {
-    const GpuFrame& f = state_->frame;
-    recordPass(*state_, commands, kPassFindLightsAccurate, f.tileCounts.x, f.tileCounts.y);
-    recorderOf(*state_, commands).publish();
+    State& state = *state_;
+    const GpuFrame& f = state.frame;
+    if (state.frames[state.current].settings.lightLists == LightLists::Pixel)
+        recordPass(state, commands, kPassFindLightsAccurate, f.tileCounts.x, f.tileCounts.y);
+    recorderOf(state, commands).publish();
 }
 
 void View::recordShadowBounds(VkCommandBuffer commands) noexcept {
@@ -121,7 +166,14 @@ void View::recordShadowBounds(VkCommandBuffer commands) noexcept {
 
 void View::recordGenerateShadows(VkCommandBuffer commands) noexcept {
     State& state = *state_;
-    recordPass(state, commands, kPassGenerateShadows, state.frame.tileCounts.x, state.frame.tileCounts.y);
+    Dispatch classify = {.pipeline = state.pipelines.once[kPassClassifyPairs]};
+    classify.indirect = state.buffers.device[kBufferPairQueues].buffer;
+    classify.offset = pairHeadOffset(state, offsetof(GpuPairHead, classifyGroupCountX));
+    recordPass(state, commands, kPassClassifyPairs, {&classify, 1});
+    recordQueues(state, commands, kPassSearchPairs, state.pipelines.searchPairs,
+                 offsetof(GpuPairQueue, searchGroupCountX));
+    recordQueues(state, commands, kPassFilterPairs, state.pipelines.filterPairs,
+                 offsetof(GpuPairQueue, filterGroupCountX));
     state.frames[state.current].generated = true;
     recorderOf(state, commands).publish();
 }

@@ -23,8 +23,11 @@
 #include "vulkan/work_group.glsl"
 #include "gpu_interface/working_set.glsl"
 #include "find_lights_approximate/froxel.glsl"
+#include "find_lights_approximate/tile_lists.glsl"
 #include "shading/candidates.glsl"
 #include "shading/receiver.glsl"
+#include "visibility/filters.glsl"
+#include "visibility/light_views.glsl"
 
 layout(constant_id = kSpecListReservation) const uint kListReservation = kReserveApproximate;
 
@@ -32,6 +35,7 @@ shared uint candidateWords[kLightGroupCount];
 shared uint tileWords[kLightGroupCount];
 shared uint castingWords[kLightGroupCount];
 shared uint tileSlotId;
+shared uint queuedPairCounts[kPairQueueCount];
 
 // Lights of the group's mask that may reach the tile, one per lane, two light groups at a time.
 void testFroxel(uint lane, uint groups, Candidates candidates, Froxel froxel, uint groupMaskBase) {
@@ -115,18 +119,27 @@ uint reserve(uint tileIndex, uint count) {
     if (kListReservation == kReserveAccurate) {
         uint wanted = roundUpToEarlyWord(count);
         uint slotId = wanted == 0u ? 0u : atomicAdd(counters.listEntries, wanted);
-        bool fits = slotId <= frame.listCapacity && wanted <= frame.listCapacity - slotId;
-        if (!fits) atomicAdd(counters.listOverflowTiles, 1u);
-        return fits ? slotId : kNoListSpace;
+        return fitsListSpace(slotId, wanted) ? slotId : kNoListSpace;
     }
-    uint slotId = tileLightSlotIds[tileIndex];
     // Phase 2 looked for space only where it found lights.
     if (kListReservation == kReserveFixed) capacity = capacity == 0u ? 0u : roundUpToEarlyWord(frame.fixedListEntries);
-    if (slotId != kNoListSpace && count > capacity) {
-        atomicAdd(counters.listOverflowTiles, 1u);
-        return kNoListSpace;
+    return count > capacity ? kNoListSpace : tileLightSlotIds[tileIndex];
+}
+
+// One word of the tile's list. Its pairs are counted for their queues.
+void writeWord(uvec2 tile, uint groups, uint word, uint count) {
+    uint packed = 0u;
+    for (uint i = 0u; i < kEarlyIndicesPerWord; ++i) {
+        uint entry = word * kEarlyIndicesPerWord + i;
+        if (entry >= count) break;
+        uint lightIndex = lightOfEntry(groups, entry);
+        packed |= lightIndex << (kLightIndexBits * i);
+        GpuLight light = lights[lightIndex];
+        if (lightCasts(light)) atomicAdd(queuedPairCounts[pairQueueOf(filterOf(light), shadowViewsOf(light))], 1u);
     }
-    return slotId;
+    uint at = tileSlotId / kEarlyIndicesPerWord + word;
+    earlyList[at] = packed;
+    listTiles[at] = packTile(tile.x, tile.y);
 }
 
 void main() {
@@ -138,6 +151,7 @@ void main() {
         tileWords[lane] = 0u;
         castingWords[lane] = 0u;
     }
+    if (lane < kPairQueueCount) queuedPairCounts[lane] = 0u;
     barrier();
     vec2 depths = tileDepthRanges[tileIndex];
     bool hasGeometry = depths.x <= depths.y;
@@ -158,17 +172,16 @@ void main() {
     if (lane == 0u) {
         uint slotId = reserve(tileIndex, count);
         tileSlotId = slotId;
-        tileLightSlotIds[tileIndex] = slotId;
-        earlyCounts[tileIndex] = count | (counts.y << kEarlyCastingShift);
+        writeTileLists(tile, slotId, count, counts.y);
+        if (slotId != kNoListSpace && count != 0u) walkListSpace(slotId + count);
     }
     barrier();
     if (tileSlotId == kNoListSpace) return;
     for (uint word = lane; word * kEarlyIndicesPerWord < count; word += kWorkGroupSize) {
-        uint packed = 0u;
-        for (uint i = 0u; i < kEarlyIndicesPerWord; ++i) {
-            uint entry = word * kEarlyIndicesPerWord + i;
-            if (entry < count) packed |= lightOfEntry(groups, entry) << (kLightIndexBits * i);
-        }
-        earlyList[tileSlotId / kEarlyIndicesPerWord + word] = packed;
+        writeWord(tile, groups, word, count);
+    }
+    barrier();
+    if (lane < kPairQueueCount && queuedPairCounts[lane] != 0u) {
+        atomicAdd(pairs.queues[lane].listed, queuedPairCounts[lane]);
     }
 }

@@ -20,11 +20,15 @@ constexpr PassResource kResources[] = {
     {kSetLists, kBindTileLightSlotIds, Access::Write},
     {kSetLists, kBindEarlyList, Access::Write},
     {kSetLists, kBindEarlyCounts, Access::Write},
+    {kSetLists, kBindFinalCounts, Access::Write},
+    {kSetLists, kBindEvaluateTiles, Access::Write},
     {kSetReceivers, kBindDepth, Access::Sampled},
     {kSetReceivers, kBindFaceNormals, Access::Sampled},
     {kSetReceivers, kBindReceiverFlags, Access::Sampled},
     {kSetWorking, kBindCounters, Access::Write},
     {kSetWorking, kBindApproximateCounts, Access::Read},
+    {kSetWorking, kBindListTiles, Access::Write},
+    {kSetWorking, kBindPairQueues, Access::Write},
 };
 constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize, kSpecListReservation, kSpecDepthBias,
                                              kSpecFacedAwayIsDark};

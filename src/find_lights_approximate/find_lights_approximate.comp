@@ -10,6 +10,9 @@
 // - The group's mask is the OR over its 64 tiles.
 // - List space for the whole group is reserved with one atomic, from light counts rounded up to whole early-list words.
 //   (Listing 1 sums them before rounding, which lets neighbours overlap.)
+// - The early lists are written right here, and phase 3 is left out (kListsByFroxel). Its tests per pixel would leave
+//   out one light of eight, and cost more than they save: pixels are tested again where they are evaluated. The paper's
+//   way, in which phase 3 writes the lists, is a setting (kListsByPixel).
 // Uniformity: the walk goes over the OR of a subgroup's candidates. So subgroup operations are never in divergent flow,
 // and light data are loaded once per subgroup. Subgroups meet in shared memory, with two barriers in all.
 #extension GL_GOOGLE_include_directive : require
@@ -17,17 +20,37 @@
 #include "vulkan/work_group.glsl"
 #include "gpu_interface/working_set.glsl"
 #include "find_lights_approximate/froxel.glsl"
+#include "find_lights_approximate/tile_lists.glsl"
 #include "shading/candidates.glsl"
+#include "visibility/filters.glsl"
+#include "visibility/light_views.glsl"
 
+layout(constant_id = kSpecLightLists) const uint kLightLists = kListsByFroxel;
 layout(constant_id = kSpecListReservation) const uint kListReservation = kReserveApproximate;
 
 shared uint groupWords[kLightGroupCount];
 shared uint subgroupEntries[kSubgroupCount];
 shared uint groupSlotId;
+// What each lane has found, by light group: laneWords[group * kWorkGroupSize + lane].
+shared uint laneWords[kLightLists == kListsByFroxel ? kWorkGroupSize * kLightGroupCount : 1u];
+shared uint queuedPairCounts[kPairQueueCount];
 
-// Walks the candidates of this lane's tile; returns how many lights the tile may see.
-uint testLights(bool hasGeometry, Candidates candidates, Froxel froxel) {
-    uint count = 0u;
+struct Found {
+    uint groups;   // light groups of which the tile has lights
+    uint count;
+    uint casting;
+};
+
+// Counts the pairs of a light that is the same for the whole subgroup.
+void countPairs(GpuLight light, bool found) {
+    uint tiles = subgroupAdd(found ? 1u : 0u);
+    if (tiles == 0u || !subgroupElect()) return;
+    atomicAdd(queuedPairCounts[pairQueueOf(filterOf(light), shadowViewsOf(light))], tiles);
+}
+
+// Walks the candidates of this lane's tile.
+Found testLights(uint lane, bool hasGeometry, Candidates candidates, Froxel froxel) {
+    Found all = Found(0u, 0u, 0u);
     uint groups = subgroupOr(hasGeometry ? candidates.groupBits : 0u);
     while (groups != 0u) {
         uint group = findLSB(groups);
@@ -40,13 +63,50 @@ uint testLights(bool hasGeometry, Candidates candidates, Froxel froxel) {
             uint bit = findLSB(bits);
             bits &= bits - 1u;
             GpuLight light = lights[group * kLightGroupSize + bit];
-            if ((wanted >> bit & 1u) != 0u && lightMayReachFroxel(light, froxel)) found |= 1u << bit;
+            bool reached = (wanted >> bit & 1u) != 0u && lightMayReachFroxel(light, froxel);
+            if (reached) found |= 1u << bit;
+            if (kLightLists == kListsByFroxel && lightCasts(light)) {
+                all.casting += reached ? 1u : 0u;
+                countPairs(light, reached);
+            }
         }
-        count += bitCount(found);
+        all.count += bitCount(found);
+        if (kLightLists == kListsByFroxel && found != 0u) {
+            laneWords[group * kWorkGroupSize + lane] = found;
+            all.groups |= 1u << group;
+        }
         uint any = subgroupOr(found);
         if (any != 0u && subgroupElect()) atomicOr(groupWords[group], any);
     }
-    return count;
+    return all;
+}
+
+// The tile's list, by ascending light index.
+void writeList(uint lane, uvec2 tile, uint slotId, uint groups) {
+    uint at = slotId / kEarlyIndicesPerWord;
+    uint packed = 0u;
+    uint n = 0u;
+    while (groups != 0u) {
+        uint group = findLSB(groups);
+        groups &= groups - 1u;
+        uint word = laneWords[group * kWorkGroupSize + lane];
+        while (word != 0u) {
+            uint bit = findLSB(word);
+            word &= word - 1u;
+            packed |= (group * kLightGroupSize + bit) << (kLightIndexBits * n);
+            n += 1u;
+            if (n == kEarlyIndicesPerWord) {
+                earlyList[at] = packed;
+                listTiles[at] = packTile(tile.x, tile.y);
+                at += 1u;
+                packed = 0u;
+                n = 0u;
+            }
+        }
+    }
+    if (n == 0u) return;
+    earlyList[at] = packed;
+    listTiles[at] = packTile(tile.x, tile.y);
 }
 
 void writeGroupMask(uint lane) {
@@ -59,9 +119,39 @@ void writeGroupMask(uint lane) {
     }
 }
 
+// Space for the group's lists: the first entry of this lane's. `wanted` entries are this lane's own.
+uint reserve(uint lane, uint tileIndex, uint wanted) {
+    if (kListReservation == kReserveFixed) {
+        uint slotId = tileIndex * wanted;
+        if (kLightLists == kListsByFroxel && wanted != 0u) {
+            uint end = subgroupMax(slotId + wanted);
+            if (subgroupElect()) walkListSpace(min(end, frame.listCapacity));
+        }
+        return slotId;
+    }
+    uint before = subgroupExclusiveAdd(wanted);
+    uint total = subgroupAdd(wanted);
+    if (subgroupElect()) subgroupEntries[gl_SubgroupID] = total;
+    barrier();
+    total = 0u;
+    for (uint i = 0u; i < kSubgroupCount; ++i) {
+        if (i < gl_SubgroupID) before += subgroupEntries[i];
+        total += subgroupEntries[i];
+    }
+    if (lane == 0u) {
+        uint first = total == 0u ? 0u : atomicAdd(counters.listEntries, total);
+        groupSlotId = first;
+        uint end = first > frame.listCapacity ? 0u : min(first + total, frame.listCapacity);
+        if (kLightLists == kListsByFroxel) walkListSpace(end);
+    }
+    barrier();
+    return groupSlotId + before;
+}
+
 void main() {
     uint lane = laneIndex();
     if (lane < kLightGroupCount) groupWords[lane] = 0u;
+    if (lane < kPairQueueCount) queuedPairCounts[lane] = 0u;
     barrier();
 
     uvec2 tile = gl_WorkGroupID.xy * kTileGroupSizeTiles + laneCoordinates(lane);
@@ -75,33 +165,24 @@ void main() {
         candidates = candidatesOf(tile * kShadowTileSizePx, depths.x, depths.y);
         froxel = froxelOf(tile, depths.x, depths.y);
     }
-    uint count = testLights(hasGeometry, candidates, froxel);
-
-    uint wanted = roundUpToEarlyWord(count);
-    uint before = subgroupExclusiveAdd(wanted);
-    uint total = subgroupAdd(wanted);
-    if (subgroupElect()) subgroupEntries[gl_SubgroupID] = total;
+    Found found = testLights(lane, hasGeometry, candidates, froxel);
     barrier();
     writeGroupMask(lane);
-    if (inside) approximateCounts[tileIndex] = count;
-    if (kListReservation == kReserveAccurate) return;  // phase 3 reserves
-
-    uint slotId;
-    if (kListReservation == kReserveFixed) {
-        wanted = roundUpToEarlyWord(frame.fixedListEntries);
-        slotId = tileIndex * wanted;
-    } else {
-        total = 0u;
-        for (uint i = 0u; i < kSubgroupCount; ++i) {
-            if (i < gl_SubgroupID) before += subgroupEntries[i];
-            total += subgroupEntries[i];
-        }
-        if (lane == 0u) groupSlotId = total == 0u ? 0u : atomicAdd(counters.listEntries, total);
-        barrier();
-        slotId = groupSlotId + before;
+    if (kLightLists == kListsByFroxel && lane < kPairQueueCount && queuedPairCounts[lane] != 0u) {
+        atomicAdd(pairs.queues[lane].listed, queuedPairCounts[lane]);
     }
+    if (inside) approximateCounts[tileIndex] = found.count;
+    if (kLightLists == kListsByPixel && kListReservation == kReserveAccurate) return;  // phase 3 reserves
+
+    uint wanted = roundUpToEarlyWord(kListReservation == kReserveFixed ? frame.fixedListEntries : found.count);
+    uint slotId = reserve(lane, tileIndex, wanted);
     if (!inside) return;
-    bool fits = slotId <= frame.listCapacity && wanted <= frame.listCapacity - slotId;
-    tileLightSlotIds[tileIndex] = fits || count == 0u ? (fits ? slotId : 0u) : kNoListSpace;
-    if (!fits && count != 0u) atomicAdd(counters.listOverflowTiles, 1u);
+    bool fits = fitsListSpace(slotId, wanted) && (kLightLists == kListsByPixel || found.count <= wanted);
+    if (!fits) slotId = found.count == 0u ? 0u : kNoListSpace;
+    if (kLightLists == kListsByPixel) {
+        tileLightSlotIds[tileIndex] = slotId;
+        return;
+    }
+    writeTileLists(tile, slotId, found.count, found.casting);
+    if (slotId != kNoListSpace) writeList(lane, tile, slotId, found.groups);
 }

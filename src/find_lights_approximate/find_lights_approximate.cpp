@@ -18,10 +18,16 @@ constexpr PassResource kResources[] = {
     {kSetLists, kBindTileGroupLightMasks, Access::Write},
     {kSetLists, kBindTileDepthRanges, Access::Read},
     {kSetLists, kBindTileLightSlotIds, Access::Write},
+    {kSetLists, kBindEarlyList, Access::Write},
+    {kSetLists, kBindEarlyCounts, Access::Write},
+    {kSetLists, kBindFinalCounts, Access::Write},
+    {kSetLists, kBindEvaluateTiles, Access::Write},
     {kSetWorking, kBindCounters, Access::Write},
     {kSetWorking, kBindApproximateCounts, Access::Write},
+    {kSetWorking, kBindListTiles, Access::Write},
+    {kSetWorking, kBindPairQueues, Access::Write},
 };
-constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize, kSpecListReservation};
+constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize, kSpecListReservation, kSpecLightLists};
 constexpr Pass kPass = {"find_lights_approximate", Phase::FindLightsApproximate, kSpirv, kResources, kSpecialization};
 
 }  // namespace

@@ -21,6 +21,8 @@ GNOMON_CONSTANT GNOMON_UINT kShadowTileSizePx = 8u;
 // One work unit of phase 2, one lane per shadow tile: 60x34 = 2,040 groups of 64x64 pixels.
 GNOMON_CONSTANT GNOMON_UINT kTileGroupSizeTiles = 8u;
 GNOMON_CONSTANT GNOMON_UINT kTileGroupSizePx = kShadowTileSizePx * kTileGroupSizeTiles;
+// Tiles in a row whose depth ranges one work group finds.
+GNOMON_CONSTANT GNOMON_UINT kDepthTilesPerGroup = 4u;
 // Granularity of the CPU's light masks: 120x68 = 8,160 entries.
 GNOMON_CONSTANT GNOMON_UINT kMaskTileSizePx = 32u;
 // Every work group is 64x1x1, lanes in Morton order over 8x8.
@@ -66,11 +68,11 @@ GNOMON_CONSTANT GNOMON_UINT kLightTypeMask = 3u;
 GNOMON_CONSTANT GNOMON_UINT kLightCastsBit = 4u;
 // The shadow lets some light through, here or farther away: faces that look away may not be taken for dark.
 GNOMON_CONSTANT GNOMON_UINT kLightShadowFadesBit = 8u;
-// Bits 4 to 7: filter and PCSS preset, see below. Directional lights: number of cascades.
-GNOMON_CONSTANT GNOMON_UINT kLightCascadesShift = 8u;
+// Bits 4 to 8: filter and PCSS preset, see below. Directional lights: number of cascades.
+GNOMON_CONSTANT GNOMON_UINT kLightCascadesShift = 9u;
 GNOMON_CONSTANT GNOMON_UINT kLightCascadesMask = 0xFu;
 // Its six shadow views look along the axes of world space: point lights, and spots that have six.
-GNOMON_CONSTANT GNOMON_UINT kLightSixFacesBit = 0x1000u;
+GNOMON_CONSTANT GNOMON_UINT kLightSixFacesBit = 0x2000u;
 // shadowView of a light that casts no shadow.
 GNOMON_CONSTANT GNOMON_UINT kNoShadowView = 0xFFFFFFFFu;
 GNOMON_CONSTANT GNOMON_UINT kPointLightFaces = 6u;
@@ -103,13 +105,35 @@ GNOMON_CONSTANT GNOMON_UINT kMaxPcssRadiusPx = 48u;
 GNOMON_CONSTANT GNOMON_UINT kFilterHard = 0u;
 GNOMON_CONSTANT GNOMON_UINT kFilterPcf = 1u;
 GNOMON_CONSTANT GNOMON_UINT kFilterPcss = 2u;
-GNOMON_CONSTANT GNOMON_UINT kFilterHost = 3u;  // the host's own function
+GNOMON_CONSTANT GNOMON_UINT kFilterHost = 3u;        // the host's own function
+GNOMON_CONSTANT GNOMON_UINT kFilterPcssShared = 4u;  // one search for 2x2 pixels
+GNOMON_CONSTANT GNOMON_UINT kFilterCount = 5u;
 GNOMON_CONSTANT GNOMON_UINT kLightFilterShift = 4u;
-GNOMON_CONSTANT GNOMON_UINT kLightFilterMask = 3u;
+GNOMON_CONSTANT GNOMON_UINT kLightFilterMask = 7u;
 // Which of the frame's taps the light's soft shadows take.
 GNOMON_CONSTANT GNOMON_UINT kMaxPcssPresets = 4u;
-GNOMON_CONSTANT GNOMON_UINT kLightPcssPresetShift = 6u;
+GNOMON_CONSTANT GNOMON_UINT kLightPcssPresetShift = 7u;
 GNOMON_CONSTANT GNOMON_UINT kLightPcssPresetMask = kMaxPcssPresets - 1u;
+
+// --- Pairs -----------------------------------------------------------------------------------------------------------
+// What shadow views a casting light has. Pipelines that know it hold less code.
+GNOMON_CONSTANT GNOMON_UINT kShadowViewsAny = 0u;       // to be asked of the light
+GNOMON_CONSTANT GNOMON_UINT kShadowViewsOne = 1u;       // spots
+GNOMON_CONSTANT GNOMON_UINT kShadowViewsSixFaces = 2u;  // points, and spots that have six
+GNOMON_CONSTANT GNOMON_UINT kShadowViewsCascades = 3u;  // directional lights
+GNOMON_CONSTANT GNOMON_UINT kShadowViewsKinds = 3u;     // without "any"
+// A queue per filter and kind of shadow views: see pairQueueOf() of packing.h.
+GNOMON_CONSTANT GNOMON_UINT kPairQueueCount = kFilterCount * kShadowViewsKinds;
+// Work groups over pairs form rows of this many in indirect dispatches.
+GNOMON_CONSTANT GNOMON_UINT kPairRowGroups = 1024u;
+// Pairs that one work group of search_pairs takes, 16 quads of 2x2 pixels each.
+GNOMON_CONSTANT GNOMON_UINT kQuadsPerTile = kWorkGroupSize / 4u;
+GNOMON_CONSTANT GNOMON_UINT kPairsPerSearchGroup = kWorkGroupSize / kQuadsPerTile;
+// What a search tells of a quad, 16 bits. Else the filter's radius in parts of a texel.
+GNOMON_CONSTANT GNOMON_UINT kQuadDark = 0u;
+GNOMON_CONSTANT GNOMON_UINT kQuadLit = 0xFFFFu;
+GNOMON_CONSTANT GNOMON_UINT kQuadOwn = 0xFFFEu;  // each pixel searches by itself
+GNOMON_CONSTANT GNOMON_UINT kQuadRadiusParts = 1024u;
 
 // --- Depth bias ------------------------------------------------------------------------------------------------------
 GNOMON_CONSTANT GNOMON_UINT kDepthBiasOriented = 0u;          // toward the light; each texel against the face's plane
@@ -124,6 +148,10 @@ GNOMON_CONSTANT GNOMON_UINT kFrameFacingCullBit = 8u;     // phase 3 drops light
 
 // Receiver flags: R8G8_UINT, red = receiver mask, green = these bits.
 GNOMON_CONSTANT GNOMON_UINT kReceiverSubsurfaceBit = 1u;
+
+// --- Who writes the early lists --------------------------------------------------------------------------------------
+GNOMON_CONSTANT GNOMON_UINT kListsByFroxel = 0u;  // phase 2: lights that may reach a tile's froxel
+GNOMON_CONSTANT GNOMON_UINT kListsByPixel = 1u;   // phase 3, the paper's: lights that reach a pixel
 
 // --- How list space is reserved --------------------------------------------------------------------------------------
 GNOMON_CONSTANT GNOMON_UINT kReserveApproximate = 0u;  // the paper: by phase 2, from the approximate count
@@ -151,7 +179,9 @@ GNOMON_CONSTANT GNOMON_UINT kSpecVisibilityBits = 6u;    // 8 or 4
 GNOMON_CONSTANT GNOMON_UINT kSpecShadowAtlases = 7u;     // 1 to kMaxShadowAtlases: how many a frame may have
 GNOMON_CONSTANT GNOMON_UINT kSpecDepthBias = 8u;         // kDepthBiasOriented ...
 GNOMON_CONSTANT GNOMON_UINT kSpecFacedAwayIsDark = 9u;   // 1: a face that looks away from a light is dark, unasked
-GNOMON_CONSTANT GNOMON_UINT kSpecCount = 10u;
+GNOMON_CONSTANT GNOMON_UINT kSpecLightLists = 10u;       // kListsByFroxel ...
+GNOMON_CONSTANT GNOMON_UINT kSpecShadowViews = 11u;      // kShadowViewsAny ...
+GNOMON_CONSTANT GNOMON_UINT kSpecCount = 12u;
 GNOMON_CONSTANT GNOMON_UINT kSpecFirstFree = 16u;  // a host's own constants start here
 
 // --- Descriptor sets and bindings ------------------------------------------------------------------------------------
@@ -192,7 +222,10 @@ GNOMON_CONSTANT GNOMON_UINT kShadowmapsBindingCount = kBindShadowBounds + 1u;
 GNOMON_CONSTANT GNOMON_UINT kBindCounters = 0u;
 GNOMON_CONSTANT GNOMON_UINT kBindApproximateCounts = 1u;
 GNOMON_CONSTANT GNOMON_UINT kBindShadowBoundsCells = 2u;
-GNOMON_CONSTANT GNOMON_UINT kWorkingBindingCount = 3u;
+GNOMON_CONSTANT GNOMON_UINT kBindListTiles = 3u;
+GNOMON_CONSTANT GNOMON_UINT kBindPairQueues = 4u;
+GNOMON_CONSTANT GNOMON_UINT kBindQueuedPairs = 5u;
+GNOMON_CONSTANT GNOMON_UINT kWorkingBindingCount = 6u;
 
 #ifdef __cplusplus
 }  // namespace gnomon::gpu

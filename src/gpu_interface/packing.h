@@ -34,6 +34,12 @@ GNOMON_FN uint packFinalEntry(uint lightIndex, uint slotOrFlag) { return lightIn
 GNOMON_FN uint finalLightIndex(uint entry) { return entry & (kMaxLightsPerView - 1u); }
 GNOMON_FN uint finalSlotOrFlag(uint entry) { return entry >> kLightIndexBits; }
 
+// Which queue a pair belongs to. `kind`: kShadowViewsOne ...
+GNOMON_FN uint pairQueueOf(uint filterOfLight, uint kind) { return filterOfLight * kShadowViewsKinds + kind - 1u; }
+
+// Tile coordinates in a word.
+GNOMON_FN uint packTile(uint x, uint y) { return y << 16u | x; }
+
 // Where a level of the shadow bounds begins. Levels lie behind each other, each a quarter of the one before, and the
 // finest has `blocks` blocks. So level l begins at blocks (1 + 1/4 + ...) = 4 (blocks - blocks / 4^l) / 3.
 GNOMON_FN uint shadowBoundsLevelOffset(uint blocks, uint level) {

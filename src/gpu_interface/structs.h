@@ -165,6 +165,30 @@ struct GpuCounters {
     uint frameStamp;  // of the host, never changed by a pass: which frame has been counted
 };
 
+// Pairs of one filter and one kind of shadow views, waiting to be evaluated. A pair is named by its place in list space.
+struct GpuPairQueue {
+    uint searchGroupCountX;  // a VkDispatchIndirectCommand: kPairRowGroups,
+    uint searchGroupCountY;  // rows in use,
+    uint searchGroupCountZ;  // 1
+    uint searchCount;        // pairs whose quads are to be searched
+    uint filterGroupCountX;  // likewise
+    uint filterGroupCountY;
+    uint filterGroupCountZ;
+    uint filterCount;  // pairs whose pixels are to be filtered
+    uint listed;       // pairs of all early lists: how long a segment of queuedPairs the queue has
+    uint reserved0;
+    uint reserved1;
+    uint reserved2;
+};
+
+struct GpuPairHead {
+    uint classifyGroupCountX;  // a VkDispatchIndirectCommand over list space: kPairRowGroups,
+    uint classifyGroupCountY;  // rows in use,
+    uint classifyGroupCountZ;  // 1
+    uint reserved0;
+    GpuPairQueue queues[kPairQueueCount];
+};
+
 // Head of the list of tiles to be shaded with evaluation; tile coordinates (y << 16 | x) follow.
 struct GpuEvaluateHead {
     uint groupCountX;  // a VkDispatchIndirectCommand: kEvaluateRowTiles,
@@ -186,6 +210,8 @@ struct Specialization {
     uint shadowAtlases;
     uint depthBias;
     uint facedAwayIsDark;
+    uint lightLists;
+    uint shadowViews;
 };
 static_assert(sizeof(Specialization) == 4 * kSpecCount);
 static_assert(offsetof(Specialization, subgroupSize) == 4 * kSpecSubgroupSize);
@@ -198,12 +224,16 @@ static_assert(offsetof(Specialization, visibilityBits) == 4 * kSpecVisibilityBit
 static_assert(offsetof(Specialization, shadowAtlases) == 4 * kSpecShadowAtlases);
 static_assert(offsetof(Specialization, depthBias) == 4 * kSpecDepthBias);
 static_assert(offsetof(Specialization, facedAwayIsDark) == 4 * kSpecFacedAwayIsDark);
+static_assert(offsetof(Specialization, lightLists) == 4 * kSpecLightLists);
+static_assert(offsetof(Specialization, shadowViews) == 4 * kSpecShadowViews);
 
 static_assert(sizeof(GpuLight) == 96);
 static_assert(sizeof(GpuShadowView) == 208);
 static_assert(sizeof(GpuShadowBoundsCell) == 32);
 static_assert(sizeof(GpuFrame) == 16 * 16);
 static_assert(sizeof(GpuCounters) == 52);
+static_assert(sizeof(GpuPairQueue) == 48);
+static_assert(sizeof(GpuPairHead) == 16 + 48 * kPairQueueCount);
 static_assert(sizeof(GpuEvaluateHead) == 16);
 }  // namespace gnomon::gpu
 #endif

@@ -13,5 +13,11 @@ layout(set = kSetWorking, binding = kBindApproximateCounts, std430) restrict buf
 layout(set = kSetWorking, binding = kBindShadowBoundsCells, std430) restrict readonly buffer CellsBlock {
     GpuShadowBoundsCell shadowBoundsCells[];
 };
+// The tile of every word of the early list: packTile().
+layout(set = kSetWorking, binding = kBindListTiles, std430) restrict buffer ListTilesBlock { uint listTiles[]; };
+layout(set = kSetWorking, binding = kBindPairQueues, std430) restrict buffer PairQueuesBlock { GpuPairHead pairs; };
+// Places in list space. Two halves, each as long as list space: pairs to be searched, and pairs to be filtered. In each
+// half a queue has a segment as long as its pairs are many.
+layout(set = kSetWorking, binding = kBindQueuedPairs, std430) restrict buffer QueuedPairsBlock { uint queuedPairs[]; };
 
 #endif

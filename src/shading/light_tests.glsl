@@ -7,7 +7,6 @@
 
 uint lightType(GpuLight light) { return light.typeAndFlags & kLightTypeMask; }
 bool lightCasts(GpuLight light) { return (light.typeAndFlags & kLightCastsBit) != 0u; }
-bool lightHasSixFaces(GpuLight light) { return (light.typeAndFlags & kLightSixFacesBit) != 0u; }
 
 // Range, cone and mask. `toLight` is the unit direction from the point to the light (0 right at the light).
 bool lightReaches(GpuLight light, vec3 positionWs, uint receiverMask, out vec3 toLight) {

@@ -6,6 +6,7 @@
 //     if (tile.evaluate) return;                        // the second pipeline shades this tile
 //     for (uint i = 0u; i < tile.count; ++i) {
 //         uint entry = tileLightEntry(tile, i);
+//         if (isAllUnlit(entry)) continue;              // dark all over the tile
 //         GpuLight light = lights[finalLightIndex(entry)];
 //         vec3 toLight;
 //         if (!lightReaches(light, positionWs, receiverMask, toLight)) continue;
@@ -43,6 +44,8 @@ TileLights tileLightsOf(uvec2 tileCoordinates) {
 TileLights tileLightsAt(uvec2 pixel) { return tileLightsOf(pixel / kShadowTileSizePx); }
 
 uint tileLightEntry(TileLights tile, uint i) { return finalList[tile.first + i]; }
+
+bool isAllUnlit(uint entry) { return finalSlotOrFlag(entry) == kSlotAllUnlit; }
 
 // Stored visibility of a pixel in a slot.
 uint slotVisibility(uint slot, uvec2 pixel) {

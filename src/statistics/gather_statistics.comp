@@ -18,9 +18,13 @@ void main() {
         uint word = earlyCounts[tile];
         early = word & kEarlyCountMask;
         casting = word >> kEarlyCastingShift;
-        entries = finalCounts[tile] & kFinalCountMask;
+        uint count = finalCounts[tile] & kFinalCountMask;
         uint first = tileLightSlotIds[tile];
-        for (uint i = 0u; i < entries; ++i) slots += finalSlotOrFlag(finalList[first + i]) < kSlotEvaluate ? 1u : 0u;
+        for (uint i = 0u; i < count; ++i) {
+            uint slot = finalSlotOrFlag(finalList[first + i]);
+            entries += slot != kSlotAllUnlit ? 1u : 0u;
+            slots += slot < kSlotEvaluate ? 1u : 0u;
+        }
     }
     geometry = subgroupAdd(geometry);
     approximate = subgroupAdd(approximate);

@@ -61,6 +61,11 @@ bool movesTowardLight(GpuLight light, Receiver receiver) {
     return receiver.subsurface || facesLight(receiver.faceNormalWs, toLight);
 }
 
+// Whether a pixel that a casting light reaches asks the light's shadowmap at all. Else it is dark.
+bool asksShadowmap(Receiver receiver, vec3 toLight) {
+    return kFacedAwayIsDark == 0u || receiver.subsurface || facesLight(receiver.faceNormalWs, toLight);
+}
+
 // What rounding may make of a device depth, in the map and here. It has three parts: 16 steps of a float's terms, a
 // step of an atlas of fewer bits, and the rasterizer's snapping. With reversed Z the first is 20 micrometres at 20 m.
 // With standard Z and a near plane of 5 cm it is 16 mm, and no smaller bias could hold there.

@@ -9,6 +9,8 @@
 #ifndef GNOMON_VISIBILITY_PCF_GLSL
 #define GNOMON_VISIBILITY_PCF_GLSL
 
+#include "visibility/shadowmap.glsl"
+
 float pcfVisibility(ShadowPoint s) {
     float border = float(kPcfRadius) + 1.0;
     precise vec2 corner = clamp(s.corner, s.rectMin + border - 0.5, s.rectMax - border - 0.5) - float(kPcfRadius);

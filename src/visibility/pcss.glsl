@@ -33,13 +33,12 @@ float filterTap(ShadowPoint s, vec2 corner) {
     return value;
 }
 
-float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius) {
-    uint preset = pcssPresetOf(light);
+float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius, uint taps, float perTap) {
     precise float sum = 0.0;
     bool inside = !mayLeave(s, k, radius);
     vec2 direction = vec2(1.0, 0.0);
-    for (uint i = 0u; i < frame.pcssTaps[preset].filterTaps; ++i) {
-        precise float share = sqrt((float(i) + 0.5) * frame.pcssTaps[preset].perFilterTap);
+    for (uint i = 0u; i < taps; ++i) {
+        precise float share = sqrt((float(i) + 0.5) * perTap);
         precise float away = share * radius;
         vec2 offset = tapOffset(k, direction);
         direction = nextDirection(direction);
@@ -52,17 +51,33 @@ float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius) 
             sum += filterTap(s, clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));
         }
     }
-    precise float visibility = sum * frame.pcssTaps[preset].perFilterTap;
+    precise float visibility = sum * perTap;
     return visibility;
 }
 
-float pcssVisibility(GpuLight light, ShadowPoint s, uvec2 pixel) {
+// A narrow penumbra needs fewer taps: 5/12 of them for a radius of 0, and 1/32 more per square texel.
+uint tapsForRadius(uint most, float radiusPx) {
+    precise float wanted = float(most) * (5.0 / 12.0 + (1.0 / 32.0) * (radiusPx * radiusPx));
+    return min(uint(min(wanted, 64.0)) + 1u, most);
+}
+
+// `quad`: what the search of the pixel's quad has told; kQuadOwn: nothing. `fewer`: taps follow the penumbra's width.
+float pcssVisibility(GpuLight light, ShadowPoint s, uvec2 pixel, uint quad, bool fewer) {
     PcssKernel k = pcssKernelOf(light, s, pixel);
-    precise float behind = s.depth - (abs(s.slope.x) + abs(s.slope.y));
-    s.least = max(behind, s.least);
+    hidePlanesBehind(s);
     float visibility;
-    float radius = searchBlockers(light, s, k, visibility);
-    return radius < 0.0 ? visibility : filterPenumbra(light, s, k, radius);
+    precise float radius = float(quad) * (1.0 / float(kQuadRadiusParts)) * k.texel;
+    if (quad == kQuadOwn) radius = searchBlockers(light, s, k, 0.0, visibility);
+    if (radius < 0.0) return visibility;
+    uint preset = pcssPresetOf(light);
+    uint taps = frame.pcssTaps[preset].filterTaps;
+    float perTap = frame.pcssTaps[preset].perFilterTap;
+    if (fewer) {
+        precise float radiusPx = radius / k.texel;
+        taps = tapsForRadius(taps, radiusPx);
+        perTap = 1.0 / float(taps);
+    }
+    return filterPenumbra(light, s, k, radius, taps, perTap);
 }
 
 #endif

@@ -67,7 +67,7 @@ PcssKernel pcssKernelOf(GpuLight light, ShadowPoint s, uvec2 pixel) {
     k.widest = cut;
     k.radius0 = radius0;
     k.radius1 = radius1;
-    k.cube = lightHasSixFaces(light);
+    k.cube = hasShadowViews(light, kShadowViewsSixFaces);
     return k;
 }
 

@@ -33,11 +33,17 @@ void countBlockers(vec4 plane, vec4 stored, float farthest, inout Blockers found
     found.depths = depths;
 }
 
+// A blocker must be nearer to the light than the receiver: a tap's plane depth grows beyond it by one texel's slope.
+void hidePlanesBehind(inout ShadowPoint s) {
+    precise float behind = s.depth - (abs(s.slope.x) + abs(s.slope.y));
+    s.least = max(behind, s.least);
+}
+
 // What the shadow bounds tell of a search of radius `reach` that stays in the rectangle. True where they tell its whole
 // result. Else `needed` is the radius beyond which no blocker can be. It is found in two rounds: the nearest depth in a
 // region bounds what the source can see of the region, and the smaller region that is left may hold only farther
 // depths.
-bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, out float needed, out float visibility) {
+bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, float spread, out float needed, out float visibility) {
     needed = reach;
     visibility = 1.0;
     for (uint i = 0u; i < 2u; ++i) {
@@ -54,7 +60,7 @@ bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, out float needed, o
         if (i == 0u && farthest > max(s.depth + rise + slack, s.least)) return true;
         visibility = 1.0;
         // The region of the source grows toward the light.
-        float seen = fma(k.radius1, nearest, k.radius0) + kTapTexels * k.texel;
+        float seen = fma(k.radius1, nearest, k.radius0) + kTapTexels * k.texel + spread;
         seen += 1e-5 * abs(seen) + 1e-6 * (abs(k.radius0) + k.radius1 * abs(nearest));
         if (!(seen < needed)) return false;
         needed = max(seen, 0.0);
@@ -70,9 +76,11 @@ float searchRadius(uint preset, uint tap, float reach) {
 
 // Returns the filter's radius. Below 0 no filter is needed, and `visibility` is known. There are two loops, so that
 // nothing stands between the texture reads where all taps stay inside the rectangle.
-float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visibility) {
+// `spread`: how far aside, in the unit of radii, the receivers lie for which the search is made; 0 for one. What one of
+// them sees counts, so the search reaches farther by it, and a tap counts as if it were nearer by it.
+float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, float spread, out float visibility) {
     uint preset = pcssPresetOf(light);
-    precise float reach = k.widest + k.texel;
+    precise float reach = (k.widest + k.texel) + spread;
     // A depth is in the source's sight at a radius from (radius - radius0 - margin) / radius1 on.
     precise float inverse = k.radius1 > 0.0 ? 1.0 / k.radius1 : 0.0;
     precise float farthest0 = k.radius1 > 0.0 ? -(k.radius0 + kTapTexels * k.texel) * inverse : -2.0;
@@ -80,7 +88,7 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visi
     vec2 direction = vec2(1.0, 0.0);
     if (!mayLeave(s, k, reach)) {
         float needed;
-        if (knownByBounds(s, k, reach, needed, visibility)) return -1.0;
+        if (knownByBounds(s, k, reach, spread, needed, visibility)) return -1.0;
         for (uint i = 0u; i < frame.pcssTaps[preset].searchTaps; ++i) {
             float radius = searchRadius(preset, i, reach);
             if (radius > needed && !found.allOcclude) break;  // beyond, there is no blocker
@@ -88,7 +96,7 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visi
             direction = nextDirection(direction);
             precise vec2 first = floor(fma(offset, vec2(radius), s.corner));
             vec4 stored = gatherShadowTexels(s, first);
-            countBlockers(planeDepthsAt(s, first), stored, fma(radius, inverse, farthest0), found);
+            countBlockers(planeDepthsAt(s, first), stored, fma(max(radius - spread, 0.0), inverse, farthest0), found);
         }
     } else {
         for (uint i = 0u; i < frame.pcssTaps[preset].searchTaps; ++i) {
@@ -107,7 +115,7 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, out float visi
                 plane = planeDepthsAt(s, first);
                 stored = gatherShadowTexels(s, first);
             }
-            countBlockers(plane, stored, fma(radius, inverse, farthest0), found);
+            countBlockers(plane, stored, fma(max(radius - spread, 0.0), inverse, farthest0), found);
         }
     }
     visibility = found.allOcclude ? 0.0 : 1.0;

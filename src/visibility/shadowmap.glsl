@@ -5,6 +5,7 @@
 #include "visibility/depth_bias.glsl"
 #include "gpu_interface/shadowmaps_set.glsl"
 #include "shading/light_tests.glsl"
+#include "visibility/light_views.glsl"
 #include "shading/receiver.glsl"
 
 // A receiver in a shadow view, biased and ready to be compared. Device depths have a sign here that makes greater ones
@@ -34,7 +35,11 @@ uint cubeFace(vec3 fromLight) {
     return fromLight.z >= 0.0 ? 4u : 5u;
 }
 
-bool isOrthographicView(GpuShadowView view) { return (view.flags & kShadowViewOrthographicBit) != 0u; }
+// Cascades are orthographic, and no other view is.
+bool isOrthographicView(GpuShadowView view) {
+    if (kShadowViews != kShadowViewsAny) return kShadowViews == kShadowViewsCascades;
+    return (view.flags & kShadowViewOrthographicBit) != 0u;
+}
 
 vec4 clipFromWorld(GpuShadowView view, vec3 p) {
     precise vec4 clip = view.clipFromWorld[0] * p.x + view.clipFromWorld[1] * p.y + view.clipFromWorld[2] * p.z +

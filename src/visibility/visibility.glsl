@@ -12,65 +12,43 @@
 
 #include "gpu_interface/numbers.h"
 
-// Filters that lights may have; with one there is nothing to choose.
-layout(constant_id = kSpecFilters) const uint kFilters = 1u << kFilterPcss;
 layout(constant_id = kSpecPcfRadius) const uint kPcfRadius = 1;
 
-#include "visibility/cascades.glsl"
+#include "visibility/filters.glsl"
 #include "visibility/hard.glsl"
 #include "visibility/pcf.glsl"
 #include "visibility/pcss.glsl"
+#include "visibility/choose_view.glsl"
+#include "visibility/pcss_quad.glsl"
 #include "shading/stored_visibility.glsl"
 #ifdef GNOMON_HOST_PROVIDER
 #include "gnomon_host_provider.glsl"  // glslc expands no macro here
 #endif
 
-bool hasFilter(GpuLight light, uint filterOfLight) {
-    uint bit = 1u << filterOfLight;
-    if ((kFilters & bit) == 0u) return false;
-    return kFilters == bit || (light.typeAndFlags >> kLightFilterShift & kLightFilterMask) == filterOfLight;
-}
-
-float viewVisibility(uint viewIndex, GpuLight light, Receiver receiver) {
+// `quad`: what the search of the receiver's quad has told. It is kQuadOwn for filters without such a search.
+float viewVisibility(uint viewIndex, GpuLight light, Receiver receiver, uint quad) {
     ShadowPoint s = shadowPointIn(viewIndex, light, receiver);
     if (!s.inFront) return 1.0;
     if (hasFilter(light, kFilterHard)) return hardVisibility(s);
     if (hasFilter(light, kFilterPcf)) return pcfVisibility(s);
-    if (hasFilter(light, kFilterPcss)) return pcssVisibility(light, s, receiver.pixel);
+    bool shared2x2 = hasFilter(light, kFilterPcssShared);
+    if (shared2x2 || hasFilter(light, kFilterPcss)) return pcssVisibility(light, s, receiver.pixel, quad, shared2x2);
     return 1.0;
 }
 
-// The first cascade that holds the receiver. It is blended with the next one where that holds the receiver, too. The
-// last one blends into light.
-float cascadedVisibility(GpuLight light, Receiver receiver) {
-    uint count = cascadeCount(light);
-    float border;
-    uint cascade = cascadeOf(light, receiver.positionWs, border);
-    if (cascade == count) return 1.0;
-    bool last = cascade + 1u == count;
-    float ignored;
-    if (border > 0.0 && !last && !cascadeHolds(light.shadowView + cascade + 1u, receiver.positionWs, ignored)) {
-        border = 0.0;
-    }
-    precise float weight = 1.0 - border;
+float builtInVisibility(GpuLight light, Receiver receiver, uint quad) {
+    ViewChoice choice = chooseView(light, receiver);
+    if (choice.none) return 1.0;
+    precise float weight = 1.0 - choice.border;
     precise float visibility = 0.0;
     for (uint i = 0u; i < 2u; ++i) {  // a loop, so that the filter's code exists once
         precise float seen = 1.0;
-        if (i == 0u || !last) seen = viewVisibility(light.shadowView + cascade + i, light, receiver);
+        if (i == 0u || !choice.last) seen = viewVisibility(choice.view + i, light, receiver, quad);
         visibility += weight * seen;
-        if (border == 0.0) break;
-        weight = border;
+        if (choice.border == 0.0) break;
+        weight = choice.border;
     }
     return visibility;
-}
-
-float providerVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
-#ifdef GNOMON_HOST_PROVIDER
-    if (hasFilter(light, kFilterHost)) return hostVisibility(light, receiver, toLight);
-#endif
-    if (lightType(light) == kLightDirectional) return cascadedVisibility(light, receiver);
-    uint face = lightHasSixFaces(light) ? cubeFace(receiver.positionWs - light.positionWs) : 0u;
-    return viewVisibility(light.shadowView + face, light, receiver);
 }
 
 // How much of the shadow is there: directional lights lose it with the pixel's distance, others with their own.
@@ -82,15 +60,26 @@ float shadowFadeOf(GpuLight light, Receiver receiver) {
     return clamp(fade, 0.0, 1.0);
 }
 
-// Unquantised; for a pixel that the light reaches.
-float evaluateVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
-    if (!lightCasts(light) || kFilters == 0u) return 1.0;
+// For a pixel that a casting light reaches, where the search of its quad is known.
+float visibilityWithQuad(GpuLight light, Receiver receiver, vec3 toLight, uint quad) {
     precise float visibility = 0.0;
-    if (kFacedAwayIsDark == 0u || receiver.subsurface || facesLight(receiver.faceNormalWs, toLight)) {
-        visibility = providerVisibility(light, receiver, toLight);
+    if (asksShadowmap(receiver, toLight)) {
+#ifdef GNOMON_HOST_PROVIDER
+        if (hasFilter(light, kFilterHost)) visibility = hostVisibility(light, receiver, toLight);
+        else
+#endif
+        visibility = quad == kQuadDark ? 0.0 : quad == kQuadLit ? 1.0 : builtInVisibility(light, receiver, quad);
     }
     precise float faded = 1.0 - shadowFadeOf(light, receiver) * (1.0 - visibility);
     return faded;
+}
+
+// Unquantised; for a pixel that the light reaches.
+float evaluateVisibility(GpuLight light, Receiver receiver, vec3 toLight) {
+    if (!lightCasts(light) || kFilters == 0u) return 1.0;
+    uint quad = kQuadOwn;
+    if (hasFilter(light, kFilterPcssShared)) quad = searchQuad(light, receiver.pixel & ~uvec2(1u)).code;
+    return visibilityWithQuad(light, receiver, toLight, quad);
 }
 
 uint quantiseVisibility(float visibility) {

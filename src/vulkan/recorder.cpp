@@ -53,8 +53,8 @@ void Recorder::order(const Pass& pass, const std::array<BoundSet, gpu::kSetCount
         tracker_.note(sets[resource.set].uses[resource.binding], resource.access);
 }
 
-void Recorder::dispatch(const Pass& pass, VkPipeline pipeline, VkPipelineLayout layout,
-                        const std::array<BoundSet, gpu::kSetCount>& sets, const Dispatch& dispatch) noexcept {
+void Recorder::dispatch(const Pass& pass, VkPipelineLayout layout, const std::array<BoundSet, gpu::kSetCount>& sets,
+                        std::span<const Dispatch> dispatches) noexcept {
     const Functions& vk = device_.vk;
     if (device_.debugLabels) {
         VkDebugUtilsLabelEXT label = {VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT};
@@ -64,7 +64,6 @@ void Recorder::dispatch(const Pass& pass, VkPipeline pipeline, VkPipelineLayout 
     order(pass, sets);
     const Timeline::Row row =
         timeline_ != nullptr ? timeline_->begin(commands_, pass.name, pass.phase, RowKind::Compute) : Timeline::kNone;
-    vk.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     for (std::uint32_t set = 0; set < gpu::kSetCount; ++set) {
         bool used = false;
         for (const PassResource& resource : pass.resources) used = used || resource.set == set;
@@ -72,12 +71,16 @@ void Recorder::dispatch(const Pass& pass, VkPipeline pipeline, VkPipelineLayout 
         vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, layout, set, 1, &sets[set].handle, 0,
                                  nullptr);
     }
-    assert(std::ranges::any_of(pass.resources, [](const PassResource& r) { return r.access == Access::Indirect; }) ==
-           (dispatch.indirect != VK_NULL_HANDLE));
-    if (dispatch.indirect != VK_NULL_HANDLE) {
-        vk.CmdDispatchIndirect(commands_, dispatch.indirect, dispatch.offset);
-    } else {
-        vk.CmdDispatch(commands_, dispatch.x, dispatch.y, 1);
+    for (const Dispatch& dispatch : dispatches) {
+        assert(std::ranges::any_of(pass.resources, [](const PassResource& r) {
+                   return r.access == Access::Indirect;
+               }) == (dispatch.indirect != VK_NULL_HANDLE));
+        vk.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, dispatch.pipeline);
+        if (dispatch.indirect != VK_NULL_HANDLE) {
+            vk.CmdDispatchIndirect(commands_, dispatch.indirect, dispatch.offset);
+        } else {
+            vk.CmdDispatch(commands_, dispatch.x, dispatch.y, 1);
+        }
     }
     if (timeline_ != nullptr) timeline_->end(commands_, row);
     if (device_.debugLabels) vk.CmdEndDebugUtilsLabelEXT(commands_);

@@ -34,6 +34,7 @@ struct BoundSet {
 };
 
 struct Dispatch {
+    VkPipeline pipeline = VK_NULL_HANDLE;
     std::uint32_t x = 1, y = 1;
     VkBuffer indirect = VK_NULL_HANDLE;  // in place of x and y: a VkDispatchIndirectCommand at this offset
     VkDeviceSize offset = 0;
@@ -45,9 +46,10 @@ public:
              Timeline* timeline) noexcept
         : device_(device), commands_(commands), tracker_(tracker), timeline_(timeline) {}
 
-    // `sets` by set number; those that the pass does not use may be empty.
-    void dispatch(const Pass& pass, VkPipeline pipeline, VkPipelineLayout layout,
-                  const std::array<BoundSet, gpu::kSetCount>& sets, const Dispatch& dispatch) noexcept;
+    // `sets` by set number; those that the pass does not use may be empty. Several dispatches of a pass stand in no
+    // order among themselves.
+    void dispatch(const Pass& pass, VkPipelineLayout layout, const std::array<BoundSet, gpu::kSetCount>& sets,
+                  std::span<const Dispatch> dispatches) noexcept;
     // Makes everything written so far visible to the host's shaders and to indirect dispatch.
     void publish() noexcept;
     void barrier(VkPipelineStageFlags2 fromStage, VkAccessFlags2 fromAccess, VkPipelineStageFlags2 toStage,

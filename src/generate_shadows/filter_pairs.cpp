@@ -1,4 +1,4 @@
-#include "generate_shadows/generate_shadows.h"
+#include "generate_shadows/filter_pairs.h"
 
 #include "gpu_interface/numbers.h"
 
@@ -8,14 +8,12 @@ namespace {
 using namespace gpu;
 
 constexpr std::uint32_t kSpirv[] = {
-#include "generate_shadows.spv.h"
+#include "filter_pairs.spv.h"
 };
 constexpr PassResource kResources[] = {
     {kSetLists, kBindFrame, Access::Uniform},
     {kSetLists, kBindLights, Access::Streamed},
-    {kSetLists, kBindTileLightSlotIds, Access::Read},
     {kSetLists, kBindEarlyList, Access::Read},
-    {kSetLists, kBindEarlyCounts, Access::Read},
     {kSetLists, kBindFinalList, Access::Write},
     {kSetLists, kBindFinalCounts, Access::Write},
     {kSetLists, kBindVisibility, Access::Write},
@@ -31,15 +29,17 @@ constexpr PassResource kResources[] = {
     {kSetShadowmaps, kBindShadowSampler, Access::Sampled},
     {kSetShadowmaps, kBindShadowBounds, Access::Read},
     {kSetWorking, kBindCounters, Access::Write},
+    {kSetWorking, kBindListTiles, Access::Read},
+    {kSetWorking, kBindPairQueues, Access::Read},
+    {kSetWorking, kBindPairQueues, Access::Indirect},
+    {kSetWorking, kBindQueuedPairs, Access::Read},
 };
-constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize, kSpecFilters,        kSpecPcfRadius,
-                                             kSpecPcssPresets,  kSpecVisibilityBits, kSpecShadowAtlases,
-                                             kSpecDepthBias,    kSpecFacedAwayIsDark};
-constexpr Pass kPass = {"generate_shadows", Phase::GenerateShadows, kSpirv, kResources, kSpecialization};
+constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize, kSpecFilters, kSpecPcfRadius, kSpecPcssPresets, kSpecVisibilityBits, kSpecShadowAtlases, kSpecDepthBias, kSpecFacedAwayIsDark, kSpecShadowViews};
+constexpr Pass kPass = {"filter_pairs", Phase::GenerateShadows, kSpirv, kResources, kSpecialization};
 
 }  // namespace
 
-const Pass& generateShadowsPass() noexcept {
+const Pass& filterPairsPass() noexcept {
     return kPass;
 }
 

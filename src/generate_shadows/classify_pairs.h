@@ -1,0 +1,10 @@
+#pragma once
+// Phase 4, first step. Source: the paper, section 2.4.
+
+#include "vulkan/pass.h"
+
+namespace gnomon {
+
+const Pass& classifyPairsPass() noexcept;
+
+}  // namespace gnomon

@@ -1,0 +1,125 @@
+#version 460
+// Phase 4, last step: the visibility of a pair's light from every pixel of its tile. One pipeline per filter and kind of
+// shadow views, one work group per pair.
+//
+// Problem: a lighting shader that evaluates shadows keeps its own registers and the filter's alive together.
+// Source: the paper, section 2.4, listing 4. Wholly dark and wholly lit: a flag in the list. Else a slot.
+// Here: light and shadow views are the same for all lanes, so a compiler may keep them in scalar registers.
+// - Dark and lit are decided on the quantised values, by a vote of the pixels that the light reaches.
+// - Lanes leave their values in shared memory, and one lane per word of the slot packs them.
+// - With "pcss_shared" the search has been made (search_pairs), and what the quads have found lies in the slot. Quads
+//   that need a filter are moved to the front lanes. So a warp ends at once if there are few of them.
+// Overflow: without a slot the entry says EVALUATE, and nothing is lost.
+#extension GL_GOOGLE_include_directive : require
+#define GNOMON_LISTS_ACCESS
+#include "vulkan/work_group.glsl"
+#include "generate_shadows/evaluate_entry.glsl"
+#include "generate_shadows/pair_queues.glsl"
+#include "visibility/visibility.glsl"
+
+const uint kNotLit = 1u;
+const uint kNotDark = 2u;
+const uint kPixelsPerWord = 32u / kVisibilityBits;
+
+shared uint stored[kWorkGroupSize];  // by lane, which is the pixel's place in the tile
+shared uint subgroupVotes[kSubgroupCount];
+shared uint pairSlot;
+
+uint wordOf(uint word) {
+    uint packed = 0u;
+    for (uint i = 0u; i < kPixelsPerWord; ++i) packed |= stored[word * kPixelsPerWord + i] << (kVisibilityBits * i);
+    return packed;
+}
+
+// `votes` of this lane: kNotLit and kNotDark. Returns those of the work group.
+uint combineVotes(uint votes) {
+    votes = subgroupOr(votes);
+    if (kSubgroupCount > 1u && subgroupElect()) subgroupVotes[gl_SubgroupID] = votes;
+    barrier();
+    if (kSubgroupCount > 1u) {
+        for (uint i = 0u; i < kSubgroupCount; ++i) votes |= subgroupVotes[i];
+    }
+    return votes;
+}
+
+void filterAllPixels(Pair pair, GpuLight light, uint lane) {
+    Receiver receiver = receiverAt(pair.tile * kShadowTileSizePx + laneCoordinates(lane));
+    vec3 toLight;
+    uint level = 0u;
+    uint votes = 0u;
+    if (receiver.valid && lightReaches(light, receiver.positionWs, receiver.mask, toLight)) {
+        level = quantiseVisibility(visibilityWithQuad(light, receiver, toLight, kQuadOwn));
+        votes = (level != kVisibilityLevels ? kNotLit : 0u) | (level != 0u ? kNotDark : 0u);
+    }
+    stored[lane] = level;
+    votes = combineVotes(votes);
+    uint slot = (votes & kNotDark) == 0u ? kSlotAllUnlit : kSlotAllLit;
+    if (votes == (kNotLit | kNotDark)) {
+        if (lane == 0u) pairSlot = atomicAdd(counters.visibilitySlots, 1u);
+        barrier();
+        slot = pairSlot;
+        if (slot >= frame.slotCapacity) {
+            if (lane == 0u) evaluateEntry(pair.place, pair.lightIndex, pair.tile);
+            return;
+        }
+        if (lane < kVisibilitySlotWords) visibilityWords[slot * kVisibilitySlotWords + lane] = wordOf(lane);
+    }
+    if (lane == 0u) finalList[pair.place] = packFinalEntry(pair.lightIndex, slot);
+}
+
+uint codeOf(uint slot, uint quad) {
+    return visibilityWords[slot * kVisibilitySlotWords + quad / 2u] >> (16u * (quad & 1u)) & 0xFFFFu;
+}
+
+// The lane's quad: the lane / 4-th of those that need a filter. kQuadsPerTile: none is left.
+uint quadOfLane(uint slot, uint lane, bool all, out uint code) {
+    uint left = lane / 4u;
+    code = kQuadDark;
+    uint found = kQuadsPerTile;
+    for (uint i = 0u; i < kQuadsPerTile; ++i) {
+        uint c = codeOf(slot, i);
+        if (!all && (c == kQuadDark || c == kQuadLit)) continue;
+        if (left == 0u && found == kQuadsPerTile) {
+            found = i;
+            code = c;
+        } else if (left != 0u) {
+            --left;
+        }
+    }
+    return found;
+}
+
+void filterQuads(Pair pair, GpuLight light, uint lane) {
+    uint slot = finalSlotOrFlag(finalList[pair.place]);
+    bool fades = (light.typeAndFlags & kLightShadowFadesBit) != 0u;
+    stored[lane] = codeOf(slot, lane / 4u) == kQuadLit ? kVisibilityLevels : 0u;
+    uint code;
+    uint quad = quadOfLane(slot, lane, fades, code);
+    barrier();
+    if (quad < kQuadsPerTile) {
+        uint place = 4u * quad + lane % 4u;
+        Receiver receiver = receiverAt(pair.tile * kShadowTileSizePx + laneCoordinates(place));
+        vec3 toLight;
+        uint level = 0u;
+        if (receiver.valid && lightReaches(light, receiver.positionWs, receiver.mask, toLight)) {
+            level = quantiseVisibility(visibilityWithQuad(light, receiver, toLight, code));
+        }
+        stored[place] = level;
+    }
+    barrier();
+    if (lane < kVisibilitySlotWords) visibilityWords[slot * kVisibilitySlotWords + lane] = wordOf(lane);
+}
+
+void main() {
+    uint queue = pairQueueOf(findLSB(kFilters), kShadowViews);
+    uint i = pairGroup();
+    uint at = segmentOf(queue) + i;
+    if (i >= pairs.queues[queue].filterCount || at >= frame.listCapacity) return;
+    Pair pair = pairAt(queuedPairs[frame.listCapacity + at]);
+    GpuLight light = lights[pair.lightIndex];
+    if (kFilters == 1u << kFilterPcssShared) {
+        filterQuads(pair, light, laneIndex());
+    } else {
+        filterAllPixels(pair, light, laneIndex());
+    }
+}

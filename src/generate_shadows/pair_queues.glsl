@@ -1,0 +1,31 @@
+// Pairs of a tile and a light of its early list, named by the light's place in list space, and the queues in which they
+// wait.
+#ifndef GNOMON_GENERATE_SHADOWS_PAIR_QUEUES_GLSL
+#define GNOMON_GENERATE_SHADOWS_PAIR_QUEUES_GLSL
+
+#include "gpu_interface/lists_set.glsl"
+#include "gpu_interface/working_set.glsl"
+
+struct Pair {
+    uint place;       // in list space
+    uint lightIndex;
+    uvec2 tile;
+};
+
+Pair pairAt(uint place) {
+    uint word = place / kEarlyIndicesPerWord;
+    uint tile = listTiles[word];
+    return Pair(place, unpackEarlyIndex(earlyList[word], place), uvec2(tile & 0xFFFFu, tile >> 16u));
+}
+
+// Where the queue's segment begins in each half of queuedPairs.
+uint segmentOf(uint queue) {
+    uint first = 0u;
+    for (uint i = 0u; i < queue; ++i) first += pairs.queues[i].listed;
+    return first;
+}
+
+// A work group's number in a dispatch over pairs.
+uint pairGroup() { return gl_WorkGroupID.y * kPairRowGroups + gl_WorkGroupID.x; }
+
+#endif

@@ -1,0 +1,10 @@
+#pragma once
+// Phase 4, second step, for Filter::PcssShared. Source: the paper, section 2.4.
+
+#include "vulkan/pass.h"
+
+namespace gnomon {
+
+const Pass& searchPairsPass() noexcept;
+
+}  // namespace gnomon

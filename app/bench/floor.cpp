@@ -9,6 +9,9 @@
 //     shadowmap  of every pair of pixel and casting light the filter's samples, and 4 B: shadow views are sized to
 //                about a texel per pixel, and neighbours share their taps
 //
+// Samples take the time of the device's rate for them. Fetches, and gathers of PCF, are coherent: neighbouring pixels
+// read neighbouring texels. Gathers of PCSS are scattered: every pixel turns its pattern of taps another way.
+//
 // Pairs of pixel and casting light are counted as 64 per casting early entry. That is an upper bound. Pixels that the
 // light does not reach, or whose face looks away from it, take no samples, and no statistic counts them. So the floor
 // of a pass that evaluates shadows may lie above its time.
@@ -35,7 +38,7 @@ constexpr double kEarlyEntryBytes = kWordBytes / gpu::kEarlyIndicesPerWord;
 constexpr double kTexelBytes = 4.0;
 
 PassNeed operator+(const PassNeed& a, const PassNeed& b) {
-    return {a.bytes + b.bytes, a.fetches + b.fetches, a.gathers + b.gathers};
+    return {a.bytes + b.bytes, a.fetches + b.fetches, a.gathers + b.gathers, a.scatteredGathers + b.scatteredGathers};
 }
 
 double geometryPixels(const FrameCounts& c) {
@@ -55,8 +58,8 @@ PassNeed lights(const FrameCounts& c) {
 PassNeed shadows(const FrameCounts& c, const FilterSamples& s) {
     const double pairs = kTilePixels * c.earlyCastingEntries;
     const double mixed = std::min(kTilePixels * c.slots, pairs);
-    return {kTexelBytes * pairs + sizeof(gpu::GpuShadowView) * c.shadowViews, s.fetches * pairs,
-            s.gathers * pairs + s.gathersIfMixed * mixed};
+    return {kTexelBytes * pairs + sizeof(gpu::GpuShadowView) * c.shadowViews, s.fetches * pairs, s.gathers * pairs,
+            s.scatteredGathers * pairs + s.scatteredIfMixed * mixed};
 }
 
 PassNeed surfaces(const FrameCounts& c) {
@@ -109,7 +112,8 @@ std::optional<PassNeed> needOf(const std::string& pass, const FrameCounts& c, co
 
 double floorMs(const PassNeed& need, const renderer::DeviceRates& rates) {
     const double memory = need.bytes / rates.bytesPerSecond;
-    const double texture = need.fetches / rates.fetchesPerSecond + need.gathers / rates.gathersPerSecond;
+    const double texture = need.fetches / rates.fetches.coherent + need.gathers / rates.gathers.coherent +
+                           need.scatteredGathers / rates.gathers.scattered;
     return 1e3 * std::max(memory, texture);
 }
 

@@ -21,12 +21,13 @@ FrameCounts frameCounts(std::uint32_t widthPx, std::uint32_t heightPx);  // what
 
 /// Samples of a shadowmap that the filter takes for one pixel and light.
 struct FilterSamples {
-    double fetches = 0, gathers = 0;  // always
-    double gathersIfMixed = 0;        // and where the tile is neither wholly lit nor wholly dark
+    double fetches = 0, gathers = 0;  // always, beside those of the neighbours
+    double scatteredGathers = 0;      // always, in places of the pixel's own,
+    double scatteredIfMixed = 0;      // and where the tile is neither wholly lit nor wholly dark
 };
 
 struct PassNeed {
-    double bytes = 0, fetches = 0, gathers = 0;
+    double bytes = 0, fetches = 0, gathers = 0, scatteredGathers = 0;
 };
 /// Nothing for passes whose amount of work no statistic tells.
 std::optional<PassNeed> needOf(const std::string& pass, const FrameCounts& counts, const FilterSamples& samples);

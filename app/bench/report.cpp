@@ -21,8 +21,8 @@ FilterSamples samplesOf(const renderer::FrameSettings& settings) {
         if (filter == Filter::Pcf) samples.gathers += share * (shadows.pcfRadius + 1.0) * (shadows.pcfRadius + 1.0);
         if (!isSoft(filter)) continue;
         for (std::uint32_t i = 0; i < shadows.pcssPresetCount; ++i) {
-            samples.gathers += share * shadows.pcssPresets[i].searchTaps / shadows.pcssPresetCount;
-            samples.gathersIfMixed += share * shadows.pcssPresets[i].filterTaps / shadows.pcssPresetCount;
+            samples.scatteredGathers += share * shadows.pcssPresets[i].searchTaps / shadows.pcssPresetCount;
+            samples.scatteredIfMixed += share * shadows.pcssPresets[i].filterTaps / shadows.pcssPresetCount;
         }
     }
     return samples;
@@ -144,6 +144,15 @@ double medianRatio(const Variant& a, const Variant& b) {
     return spreadOf(ratios).median;
 }
 
+static void printRates(const renderer::DeviceRates& rates) {
+    fmt::print("Copies {:.0f} GB/s (read and written)\n", rates.bytesPerSecond * 1e-9);
+    const auto print = [](const char* what, const renderer::SampleRates& of) {
+        fmt::print("{} {:.1f} G/s coherent, {:.1f} G/s scattered\n", what, of.coherent * 1e-9, of.scattered * 1e-9);
+    };
+    print("Texel fetches", rates.fetches);
+    print("Texture gathers", rates.gathers);
+}
+
 void printBench(const Measurement& measured) {
     const Session& session = measured.session;
     const std::vector<Variant>& variants = measured.variants;
@@ -154,10 +163,7 @@ void printBench(const Measurement& measured) {
                session.settings().scene, desc.widthPx, desc.heightPx, session.settings().filter, s.lights.given,
                s.lights.visible, meanPerTile(s.earlyEntries, s), meanPerTile(s.earlyCastingEntries, s),
                variants.front().compute().size());
-    if (measured.rates)
-        fmt::print("Copies {:.0f} GB/s (read and written), {:.1f} G fetches/s, {:.1f} G gathers/s\n",
-                   measured.rates->bytesPerSecond * 1e-9, measured.rates->fetchesPerSecond * 1e-9,
-                   measured.rates->gathersPerSecond * 1e-9);
+    if (measured.rates) printRates(*measured.rates);
     for (const Variant& variant : variants) printVariant(measured, variant);
     fmt::print("\n");
     for (const Ratio& ratio : ratiosOf(variants))
@@ -174,6 +180,7 @@ static Json passesOf(const Measurement& measured, const Variant& variant) {
             pass["floor"] = {{"bytes", floor->need.bytes},
                              {"fetches", floor->need.fetches},
                              {"gathers", floor->need.gathers},
+                             {"scatteredGathers", floor->need.scatteredGathers},
                              {"ms", floor->ms},
                              {"ratio", spreadOf(row.milliseconds).median / floor->ms}};
         }
@@ -194,8 +201,10 @@ Json describeBench(const Measurement& measured) {
     out["framesPerSecond"] = measured.framesPerSecond;
     if (measured.rates)
         out["rates"] = {{"copyBytesPerSecond", measured.rates->bytesPerSecond},
-                        {"fetchesPerSecond", measured.rates->fetchesPerSecond},
-                        {"gathersPerSecond", measured.rates->gathersPerSecond}};
+                        {"coherentFetchesPerSecond", measured.rates->fetches.coherent},
+                        {"scatteredFetchesPerSecond", measured.rates->fetches.scattered},
+                        {"coherentGathersPerSecond", measured.rates->gathers.coherent},
+                        {"scatteredGathersPerSecond", measured.rates->gathers.scattered}};
     for (const Variant& variant : variants) {
         out["variants"][variant.name()] = {{"shadowPhasesAndLighting", toJson(variant.compute())},
                                            {"shadowPhases", toJson(variant.phases())},

@@ -1,34 +1,59 @@
 #version 460
-// Samples a shadow atlas as the filters do, with next to no arithmetic around it: how many samples a device can take
-// when all of them are in its texture caches. Every work group stays within a block of 32x32 texels.
+// Samples a shadow atlas as the filters do, from texture caches, with as little arithmetic around it as possible.
+//
+// Problem: how many samples a second can a device take? A loop that asks this easily measures something else. If
+// results are not used, or places come back after a few steps, a compiler takes fewer samples than are written. If
+// places are costly to find, arithmetic is measured.
+// Here:
+// 1. Every lane stores the xor of all it has read. A test compares it with the same by the CPU.
+// 2. A place costs few instructions. For RDNA2, RADV makes three vector instructions beside a coherent fetch, and
+//    eleven beside a scattered gather.
+// 3. Four samples at a time do not depend on each other.
+// 4. Coherent: the lanes of a group read an 8x8 tile, which moves as a whole. Neighbours read neighbouring texels, as
+//    pixels do that look up one texel each. Scattered: each lane has a place of its own in a square of 32x32 texels, as
+//    the taps of soft shadows have.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#include "renderer/rates/sample_pattern.h"
 #include "vulkan/work_group.glsl"
 
-layout(constant_id = kSpecFirstFree) const uint kGather = 0;          // 1: 2x2 texels by textureGather, 0: one by texelFetch
-layout(constant_id = kSpecFirstFree + 1) const uint kSamplesPerLane = 1;  // a multiple of 16
+layout(constant_id = kSpecRateGathers) const uint kGathers = 0;
+layout(constant_id = kSpecRateScattered) const uint kScattered = 0;
 layout(set = 0, binding = 0) uniform texture2DArray atlas;
 layout(set = 0, binding = 1) uniform sampler nearest;
-layout(set = 0, binding = 2, std430) restrict writeonly buffer Result { float result[]; };
+layout(set = 0, binding = 2, std430) restrict writeonly buffer Result { uint result[]; };  // by group and lane
+layout(push_constant) uniform Amount { uint rounds; };
 
-const uint kAtlasSizePx = 1024u;
+uint scrambled(uint x) {
+    x = (x ^ (x >> 16u)) * 0x7FEB352Du;
+    x = (x ^ (x >> 15u)) * 0x846CA68Bu;
+    return x ^ (x >> 16u);
+}
+
+uint sampleBits(uvec2 own, uint place) {
+    uvec2 texel = own + uvec2(place >> kRateXShift, bitfieldExtract(place, int(kRateYShift), int(kRateReachBits)));
+    if (kGathers == 0u) return floatBitsToUint(texelFetch(atlas, ivec3(texel, 0), 0).x);
+    const float perTexel = 1.0 / float(kRateAtlasSizePx);
+    vec2 at = vec2(texel) * perTexel + perTexel;  // between the 2x2 texels; exact, since this is a power of two
+    uvec4 bits = floatBitsToUint(textureGather(sampler2DArray(atlas, nearest), vec3(at, 0.0)));
+    return bits.x ^ bits.y ^ bits.z ^ bits.w;
+}
 
 void main() {
+    uint group = gl_WorkGroupID.x;
     uint lane = laneIndex();
-    uvec2 block = uvec2(gl_WorkGroupID.x, gl_WorkGroupID.x >> 5u) * 32u % (kAtlasSizePx - 32u);
-    vec2 first = vec2(block + laneCoordinates(lane)) + 1.0;
-    vec4 sum = vec4(0.0);
-    for (uint i = 0u; i < kSamplesPerLane / 16u; ++i) {
-        // The 16 steps are unrolled, so their offsets are constants.
-        vec2 row = first + vec2(0.0, float(i & 7u));
-        for (uint j = 0u; j < 16u; ++j) {
-            vec2 at = row + vec2(float(j & 3u) * 5.0, float(j >> 2u) * 3.0);
-            if (kGather != 0u) {
-                sum += textureGather(sampler2DArray(atlas, nearest), vec3(at * (1.0 / float(kAtlasSizePx)), 0.0));
-            } else {
-                sum.x += texelFetch(atlas, ivec3(ivec2(at), 0), 0).x;
-            }
-        }
+    uint index = group * kWorkGroupSize + lane;
+    uvec2 tile = uvec2(group, group / kRateTilesPerRow) % kRateTilesPerRow;
+    uvec2 own = tile * kShadowTileSizePx + laneCoordinates(lane);
+    uint place = scrambled(kScattered != 0u ? index : group);
+    uint bits = 0u;
+    for (uint i = 0u; i < rounds; ++i) {
+        uint a = sampleBits(own, place);
+        uint b = sampleBits(own, place + kRateStep);
+        uint c = sampleBits(own, place + 2u * kRateStep);
+        uint d = sampleBits(own, place + 3u * kRateStep);
+        place += kRateSamplesPerRound * kRateStep;
+        bits ^= a ^ b ^ c ^ d;
     }
-    if (dot(sum, vec4(1.0)) < 0.0) result[0] = sum.x;  // never, but no compiler knows that
+    result[index] = bits;
 }

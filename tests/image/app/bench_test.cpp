@@ -50,7 +50,8 @@ TEST_F(Benching, PresetsSayWhereTheSceneIsUnlikeThePapers) {
 TEST_F(Benching, FloorsAreMeasured) {
     expectGood("bench boxes --floor --size 64x64 --warmup 0 --frames 2 --validate --json out.json");
     const nlohmann::json json = readJson("out.json");
-    for (const char* rate : {"copyBytesPerSecond", "fetchesPerSecond", "gathersPerSecond"})
+    for (const char* rate : {"copyBytesPerSecond", "coherentFetchesPerSecond", "scatteredFetchesPerSecond",
+                             "coherentGathersPerSecond", "scatteredGathersPerSecond"})
         EXPECT_GT(json["rates"][rate], 0.0) << rate;
     for (const char* pass :
          {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "generate_shadows", "lighting"}) {

@@ -32,10 +32,11 @@ TEST(Floor, CountsWhatFollowsFromTheExtent) {
 }
 
 TEST(Floor, IsTheLongerOfMemoryAndTexture) {
-    const renderer::DeviceRates rates = {100.0, 10.0, 5.0};
-    EXPECT_DOUBLE_EQ(floorMs({50.0, 0.0, 0.0}, rates), 500.0);
-    EXPECT_DOUBLE_EQ(floorMs({50.0, 10.0, 5.0}, rates), 2000.0);
-    EXPECT_DOUBLE_EQ(floorMs({300.0, 10.0, 5.0}, rates), 3000.0);
+    const renderer::DeviceRates rates = {100.0, {10.0, 1.0}, {5.0, 2.0}};
+    EXPECT_DOUBLE_EQ(floorMs({50.0, 0.0, 0.0, 0.0}, rates), 500.0);
+    EXPECT_DOUBLE_EQ(floorMs({50.0, 10.0, 5.0, 0.0}, rates), 2000.0);
+    EXPECT_DOUBLE_EQ(floorMs({50.0, 10.0, 5.0, 3.0}, rates), 3500.0);  // scattered gathers have a rate of their own
+    EXPECT_DOUBLE_EQ(floorMs({400.0, 10.0, 5.0, 3.0}, rates), 4000.0);
 }
 
 // One tile wide open: by hand.
@@ -48,7 +49,7 @@ TEST(Floor, OfOneTileByHand) {
     counts.earlyCastingEntries = 2;
     counts.finalEntries = 5;
     counts.slots = 1;
-    const FilterSamples filter = {1.0, 4.0, 9.0};
+    const FilterSamples filter = {1.0, 4.0, 3.0, 9.0};
 
     const PassNeed hierarchical = *needOf("hierarchical_depth", counts, filter);
     EXPECT_DOUBLE_EQ(hierarchical.bytes, 64 * 4 + 8);
@@ -58,15 +59,18 @@ TEST(Floor, OfOneTileByHand) {
     const double receivers = 64 * (4 + 4 + 2), lights = 2 * 96, words = 3 * 4, early = 8, views = 3 * 208;
     EXPECT_DOUBLE_EQ(generate.bytes, receivers + lights + words + early + views + 2 * 64 * 4 + 5 * 4 + 64);
     EXPECT_DOUBLE_EQ(generate.fetches, 3 * 64 + 2 * 64);
-    EXPECT_DOUBLE_EQ(generate.gathers, 2 * 64 * 4 + 64 * 9);
+    EXPECT_DOUBLE_EQ(generate.gathers, 2 * 64 * 4);
+    EXPECT_DOUBLE_EQ(generate.scatteredGathers, 2 * 64 * 3 + 64 * 9);
 
     const PassNeed lighting = *needOf("lighting", counts, filter);
     EXPECT_DOUBLE_EQ(lighting.bytes, 64 * (4 + 2) + 64 * (16 + 8) + 2 * 32 + lights + 2 * 4 + 5 * 4 + 64);
     EXPECT_DOUBLE_EQ(lighting.fetches, 6 * 64);
     EXPECT_DOUBLE_EQ(lighting.gathers, 0);
+    EXPECT_DOUBLE_EQ(lighting.scatteredGathers, 0);
 
     const PassNeed inlined = *needOf("lighting_inline", counts, filter);
     EXPECT_DOUBLE_EQ(inlined.gathers, generate.gathers);
+    EXPECT_DOUBLE_EQ(inlined.scatteredGathers, generate.scatteredGathers);
     EXPECT_DOUBLE_EQ(inlined.fetches, 64 * (3 + 4) + 2 * 64);
 }
 

@@ -170,6 +170,7 @@ renderer::FrameSettings frameSettingsOf(const Settings& s) {
     f.deviceDepth = s.depth == "standard" ? DeviceDepth::StandardZ : DeviceDepth::ReversedZ;
     f.inlineVariant.quantises = !s.unquantised;
     f.history = s.history == "on";
+    f.faceGuardTexels = s.faceGuardTexels;
     return f;
 }
 

@@ -20,6 +20,7 @@ inline constexpr std::uint32_t kMostPixelsAcross = 16384;
 inline constexpr std::uint32_t kMostTiles = 0xFFFFFFFFu / gpu::roundUpToEarlyWord(gpu::kMaxLightsPerView);
 inline constexpr float kMostBiasMetres = 1000.0f;
 inline constexpr std::uint32_t kMostLights = 100'000;
+inline constexpr std::uint32_t kMostFaceGuardTexels = 64;
 inline constexpr std::uint32_t kFixedListEntriesPerTile = 32;  // with --reservation fixed
 
 struct Settings {
@@ -48,6 +49,7 @@ struct Settings {
     bool subsurfaceFronts = false;
     std::string faceNormals = "stored";
     std::uint32_t atlas = 0;
+    std::uint32_t faceGuardTexels = 0;
     std::string depth = "reversed";
     std::string history = "auto";  // "auto": bench has it, others have not
     std::uint32_t listEntries = 0, visibilitySlots = 0, mostListEntries = 0, mostVisibilitySlots = 0;

@@ -231,6 +231,15 @@ std::vector<Setting> makeTable() {
          .help = "Width and height of the shadow atlas in pixels; 0: by the size of the picture",
          .choices = {"0", "256", "512", "1024", "2048", "4096", "8192", "16384"}});
     add({.group = kMaps,
+         .name = "face-guard",
+         .key = "faceGuardTexels",
+         .member = &S::faceGuardTexels,
+         .help =
+             "Texels by which each of the six shadow views of a point light or a wide spot reaches farther on every "
+             "side than pcf needs, but at most an eighth of its width. Taps of pcss then look at the view beside it "
+             "less often. The views keep their size, so their texels get larger",
+         .most = kMostFaceGuardTexels});
+    add({.group = kMaps,
          .name = "depth",
          .key = "depth",
          .member = &S::depth,

@@ -215,6 +215,7 @@ ShadowPlan Renderer::State::planShadows(const PreparedLights& prepared, const Sc
     chooseCasters(sceneLights, prepared, shadowLights);
     const ShadowPlanCamera seenBy =
         planCameraOf(sceneCamera, gbufferCameraOf(camera), origin, settings.widthPx, settings.heightPx);
+    planner.setFaceGuardTexels(settings.faceGuardTexels);
     ShadowPlan plan = planner.plan(shadowLights, seenBy, scene.parts(seenBy.frustum), origin, settings.history);
     limitBiases(sceneLights, settings, plan.views);
     return plan;

@@ -83,8 +83,9 @@ struct LightShadowViews {
 
 /// One view of a light, drawn by the host into a rectangle of one of its shadow atlases (D32 or D16, any age).
 /// A spot needs one view that holds its cone; a directional light one orthographic view per cascade; a point light or a
-/// wide spot six, of 90 degrees or a little more: where the rectangle reaches a few texels beyond 90 degrees, filters
-/// are seamless across faces.
+/// wide spot six, of 90 degrees or more: where the rectangle reaches a few texels beyond 90 degrees, filters are
+/// seamless across faces. How far it reaches is not checked and may be any number of texels, the same for all six. A
+/// receiver's view is the one of its direction's largest axis, however wide the views are.
 struct ShadowView {
     /// Perspective: clip w is the distance along the shadow view's axis in metres. Orthographic: it is 1. Near and far
     /// below must be those of this matrix: that is not checked, and shadows are wrong where they are not.

@@ -33,6 +33,10 @@ struct FrameSettings {
     /// Shadow resolutions and places in the atlas may stay what they were in earlier frames where that is nearly right.
     /// Steadier and faster in motion. Off: a frame follows from scene, time and settings alone.
     bool history = false;
+    /// Texels by which each of a light's six shadow views reaches farther, on every side, than PCF needs: at most an
+    /// eighth of its size. Taps of soft shadows then look at the next view less often. The views' rectangles keep their
+    /// size, so their texels get larger.
+    std::uint32_t faceGuardTexels = 0;
 
     bool operator==(const FrameSettings&) const = default;
 };

@@ -57,6 +57,11 @@ std::uint32_t shadowFaces(const ShadowLight& light) {
     return light.outerConeAngle > std::atan(kLargestTangent) ? gpu::kPointLightFaces : 1;
 }
 
+std::uint32_t guardTexelsOf(const ShadowPlanSettings& settings, const ShadowLight& light, std::uint32_t sizePx) {
+    const bool faces = shadowFaces(light) > 1;
+    return settings.guardTexels + (faces ? std::min(settings.faceGuardTexels, sizePx / 8) : 0);
+}
+
 ShadowView makeShadowView(const ShadowLight& light, std::uint32_t face, std::uint32_t sizePx, std::uint32_t guardTexels,
                           const glm::dvec3& origin) {
     static constexpr glm::vec3 kForward[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -224,7 +229,8 @@ PlannedView ShadowPlanner::planView(const Wish& wish, std::uint32_t face, const 
             cascadeAround(settings_.cascades, camera.cascades, seen, parts, light.direction, face, wish.size);
         planned.view = cascadeView(planned.cascade, light.direction, wish.size, origin);
     } else {
-        planned.view = makeShadowView(light, face, wish.size, settings_.guardTexels, origin);
+        planned.guardTexels = guardTexelsOf(settings_, light, wish.size);
+        planned.view = makeShadowView(light, face, wish.size, planned.guardTexels, origin);
     }
     return planned;
 }

@@ -34,7 +34,8 @@ ShadowLight shadowLightOf(const SceneLight& light);
 struct ShadowPlanSettings {
     std::uint32_t atlasSizePx = 4096;  ///< power of two
     std::uint32_t layers = 1;
-    std::uint32_t guardTexels = 4;  ///< beyond 90 degrees or the cone on each side: the widest PCF kernel and one
+    std::uint32_t guardTexels = 4;      ///< beyond 90 degrees or the cone on each side: the widest PCF kernel and one
+    std::uint32_t faceGuardTexels = 0;  ///< more of them, where a light has six faces: see guardTexelsOf()
     std::uint32_t minFacePx = 32, maxFacePx = 1024;
     std::uint32_t minSpotPx = 64, maxSpotPx = 2048;
     std::uint32_t minCascadePx = 256, maxCascadePx = 2048;  ///< a quarter of the atlas' side at most
@@ -55,8 +56,9 @@ struct ShadowPlanCamera {
 struct PlannedView {
     std::uint32_t light = 0, face = 0;
     std::uint32_t x = 0, y = 0, layer = 0, size = 0;
-    Cascade cascade;  ///< directional lights
-    ShadowView view;  ///< clipFromWorld relative to the frame's origin
+    std::uint32_t guardTexels = 0;  ///< of point lights and spots, on each side
+    Cascade cascade;                ///< directional lights
+    ShadowView view;                ///< clipFromWorld relative to the frame's origin
 };
 
 struct ShadowPlan {
@@ -78,6 +80,13 @@ float shadowNearMetres(float rangeMetres);
 /// six faces need fewer texels than one view, for the same sharpness along its axis: beyond 68 degrees.
 std::uint32_t shadowFaces(const ShadowLight& light);
 
+/// How many texels on each side of a point light's or a spot's square lie beyond 90 degrees or the cone.
+/// - Always settings.guardTexels, so that PCF is seamless across faces.
+/// - Of six faces settings.faceGuardTexels more, but at most an eighth of the square. Taps of soft shadows then leave
+///   their face less often, and leaving costs time.
+/// - The square keeps its size. So 90 degrees get fewer texels: 376 in place of 504 with 64 more guard texels of 512.
+std::uint32_t guardTexelsOf(const ShadowPlanSettings& settings, const ShadowLight& light, std::uint32_t sizePx);
+
 /// The view of one square: one of shadowFaces(), of six in the order +X -X +Y -Y +Z -Z.
 ShadowView makeShadowView(const ShadowLight& light, std::uint32_t face, std::uint32_t sizePx, std::uint32_t guardTexels,
                           const glm::dvec3& origin);
@@ -92,6 +101,8 @@ public:
     ShadowPlan plan(std::span<const ShadowLight> lights, const ShadowPlanCamera& camera,
                     std::span<const ScenePart> parts, const glm::dvec3& origin, bool history = true);
     [[nodiscard]] const ShadowPlanSettings& settings() const { return settings_; }
+    /// ShadowPlanSettings::faceGuardTexels of the plans to come. Sizes and places stay.
+    void setFaceGuardTexels(std::uint32_t texels) { settings_.faceGuardTexels = texels; }
 
 private:
     struct Wish;

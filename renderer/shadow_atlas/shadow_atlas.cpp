@@ -101,7 +101,8 @@ ShadowAtlasImage::Key ShadowAtlasImage::keyOf(const ShadowLight& light, const Pl
             view.x,
             view.y,
             view.layer,
-            view.size};
+            view.size,
+            view.guardTexels};
 }
 
 void ShadowAtlasImage::prepare(const GpuScene& scene, std::span<const ShadowLight> lights, ShadowPlan& plan) {

@@ -62,7 +62,7 @@ private:
         LightKind kind;
         glm::dvec3 cascadeCentre;
         double cascadeExtent, cascadeDepth;
-        std::uint32_t face, x, y, layer, size;
+        std::uint32_t face, x, y, layer, size, guardTexels;
         bool operator==(const Key&) const = default;
     };
     struct Drawn {

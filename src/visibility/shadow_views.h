@@ -8,6 +8,7 @@
 
 namespace gnomon {
 
+// How wide a view is is not asked: six faces may reach any number of texels beyond 90 degrees.
 // Writes views.size() entries, front to back, never reading `out`. Fails on the first view that breaks a rule of
 // ShadowView; thread safe.
 Result convertShadowViews(std::span<const ShadowView> views, std::span<const ShadowAtlas> atlases,

@@ -80,14 +80,18 @@ Scene makeScene() {
 
 class ShadowCacheTest : public DeviceTest {};
 
-// A scene and its atlas, drawn with one plan for ever.
+// A scene and its atlas, drawn with one plan until another is asked for.
 struct Rig {
-    explicit Rig(const Device& d, const Scene& s)
+    explicit Rig(const Device& d, const Scene& s, std::uint32_t faceGuardTexels = 0)
         : device(d), scene(s), gpuScene(d, s), atlas(d, gpuScene, kAtlasPx), pose(restPose(s)) {
+        for (const SceneLight& light : s.lights) lights.push_back(shadowLightOf(light));
+        planFaces(faceGuardTexels);
+    }
+    void planFaces(std::uint32_t guardTexels) {
         ShadowPlanSettings settings;
+        settings.faceGuardTexels = guardTexels;
         settings.atlasSizePx = kAtlasPx;
         settings.maxSpotPx = settings.maxFacePx = 128;
-        for (const SceneLight& light : s.lights) lights.push_back(shadowLightOf(light));
         ShadowPlanCamera camera;
         camera.position = {0, 4, 0};
         plan = ShadowPlanner(settings).plan(lights, camera, {}, {});
@@ -186,6 +190,53 @@ TEST_F(ShadowCacheTest, WhatDeformsCountsAsMoving) {
         pose.worldFromObject[3] = whole;
         rig.gpuScene.setPose(pose);
         EXPECT_EQ(rig.draw(), (Views{{kPoint, 3}}));
+    }
+    expectNoMessages();
+}
+
+// Other guard texels: the same squares show something else.
+TEST_F(ShadowCacheTest, WiderFacesAreDrawnAgain) {
+    for (const DeviceInfo& info : suitable()) {
+        SCOPED_TRACE(info.name);
+        const Device device(instance(), info);
+        Rig rig(device, makeScene());
+        rig.draw();
+        const Views all = {{kPoint, 0}, {kPoint, 1}, {kPoint, 2}, {kPoint, 3}, {kPoint, 4}, {kPoint, 5}};
+        rig.planFaces(16);
+        EXPECT_EQ(rig.draw(), all);
+        EXPECT_EQ(rig.draw(), Views());
+        EXPECT_EQ(rig.texels(), [&] {
+            Rig fresh(device, makeScene(), 16);
+            fresh.draw();
+            return fresh.texels();
+        }());
+        rig.planFaces(0);
+        EXPECT_EQ(rig.draw(), all);
+    }
+    expectNoMessages();
+}
+
+// What lies beyond 90 degrees of a face is drawn in it where it is wide enough.
+TEST_F(ShadowCacheTest, WiderFacesHaveMoreCasters) {
+    for (const DeviceInfo& info : suitable()) {
+        SCOPED_TRACE(info.name);
+        const Device device(instance(), info);
+        const glm::vec3 beside(4, 2, -26);  // 4 m and 6 m aside of the point light: the -z face's, beside the +x face
+        Rig narrow(device, makeScene());
+        narrow.draw();
+        EXPECT_EQ(narrow.move(beside), (Views{{kSpotLeft, 0}, {kPoint, 5}}));
+        Rig wide(device, makeScene(), 16);
+        wide.draw();
+        const std::vector<std::uint8_t> before = wide.texels();
+        EXPECT_EQ(wide.move(beside), (Views{{kSpotLeft, 0}, {kPoint, 0}, {kPoint, 5}}));
+        const PlannedView& face = wide.plan.views.at(wide.plan.firstView.at(kPoint));
+        const std::vector<std::uint8_t> after = wide.texels();
+        std::size_t changed = 0;
+        for (std::size_t y = face.y; y < face.y + face.size; ++y) {
+            const std::size_t row = (std::size_t{Rig::kAtlasPx} * y + face.x) * sizeof(float);
+            changed += std::memcmp(&before[row], &after[row], face.size * sizeof(float)) != 0 ? 1 : 0;
+        }
+        EXPECT_GT(changed, 0u) << "nothing of the caster is in the wide face";
     }
     expectNoMessages();
 }

@@ -206,6 +206,37 @@ TEST_P(ShadowsTest, CoarseShadowAtlases) {
     EXPECT_LT(without, with);
 }
 
+// Six faces that reach farther beyond 90 degrees than PCF needs: soft shadows look at the next face less often.
+TEST_P(ShadowsTest, WideFaces) {
+    RoomSetup setup{.seed = 19, .widthPx = 56, .heightPx = 40};
+    setup.lights.castingShare = 1.0;
+    setup.lights.maxSourceRadius = 0.5;
+    setup.shadows.viewSizePx = 64;
+    std::vector<std::vector<std::uint32_t>> bytes;
+    for (const double border : {0.0, 8.0, 20.0}) {
+        setup.shadows.borderTexels = border;
+        FrameInput input = makeRoomFrame(setup);
+        for (const Filter filter : {Filter::Pcss, Filter::Pcf, Filter::Hard}) {
+            if (border == 0.0 && filter != Filter::Pcss) continue;  // other tests have it
+            SCOPED_TRACE("border " + std::to_string(border) + " filter " + std::to_string(int(filter)));
+            useFilter(input, filter);
+            input.settings.shadowBounds = filter == Filter::Pcss;
+            Rig rig(device(), {}, viewDescFor(input));
+            ASSERT_TRUE(rig.ok());
+            const FrameResult result = rig.run(input);
+            const Checked checked = checkFrame(input, result);
+            EXPECT_LT(checked.shadows.ambiguousShare(), 0.02);
+            EXPECT_GT(checked.shadows.slots, 10u);
+            EXPECT_GT(checked.shadows.allLit, 10u);
+            std::printf("    border %g filter %d: pairs %zu ambiguous %.4f\n", border, int(filter),
+                        checked.shadows.pairs, checked.shadows.ambiguousShare());
+            bytes.push_back(result.visibility);
+        }
+    }
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) EXPECT_NE(bytes[i], bytes[j]) << i << " and " << j << " are the same";
+}
+
 // Any camera, any mixture of depths, any size of rectangle. GNOMON_FULL=1 looks at many more.
 TEST_P(ShadowsTest, RandomRooms) {
     const std::uint64_t seeds = fullRun() ? 200 : 3;
@@ -221,7 +252,7 @@ TEST_P(ShadowsTest, RandomRooms) {
         setup.lights.maxSourceRadius = random.uniform(0, 0.6);
         setup.shadows.viewSizePx = 12 + random.below(60);
         setup.shadows.infiniteFar = random.chance(0.5);
-        setup.shadows.borderTexels = random.below(4);
+        setup.shadows.borderTexels = random.below(1 + setup.shadows.viewSizePx / 4);
         setup.lights.filters = only(Filter::Pcss);
         FrameInput input = makeRoomFrame(setup);
         const PcssTaps presets[] = {kPcssLow, kPcssMedium, kPcssHigh};

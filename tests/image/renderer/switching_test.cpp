@@ -39,6 +39,7 @@ const Change kChanges[] = {
          f.shadows.depthBias = DepthBias::Unbiased;
          f.drawing.bias = {.constantFactor = 4096.0f, .slopeFactor = 2.0f};
      }},
+    {"wider cube faces", [](FrameSettings& f) { f.faceGuardTexels = 16; }},
     {"standard depth", [](FrameSettings& f) { f.deviceDepth = DeviceDepth::StandardZ; }},
     {"smaller",
      [](FrameSettings& f) {
@@ -72,7 +73,9 @@ TEST_P(Switching, EveryPictureIsThatOfAFreshRenderer) {
         EXPECT_EQ(kept.counts().resizes, resizes);
         // A few of them where a handful must do.
         const std::string name = change.name;
-        if (!thorough() && name != "hard" && name != "slots of 4 bits" && name != "smaller") continue;
+        if (!thorough() && name != "hard" && name != "slots of 4 bits" && name != "wider cube faces" &&
+            name != "smaller")
+            continue;
         const Frame expected = drawOnce(device(), view, fresh, ShadowMode::Deferred);
         EXPECT_EQ(actual.linear.width, fresh.frame.widthPx);
         EXPECT_TRUE(actual.linear.rgba == expected.linear.rgba);

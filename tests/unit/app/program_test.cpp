@@ -78,6 +78,8 @@ TEST_F(Program, WrongUsageIsRefused) {
                                   "render --exposure nan",
                                   "render --exposure 1e9",
                                   "render --atlas 100",
+                                  "render --face-guard 65",
+                                  "render --face-guard -1",
                                   "render --subgroup-size 5",
                                   "render --list-entries -1",
                                   "render --reservation none",

@@ -123,23 +123,75 @@ TEST(ShadowPlan, SixFacesCoverEveryDirectionWithTheGuardBand) {
     const glm::dvec3 origin(99990.0, 0.0, 0.0);
     std::mt19937 random(1);
     std::normal_distribution<float> normal;
-    for (int i = 0; i < 2000; ++i) {
+    struct Square {
+        std::uint32_t sizePx, guardTexels;
+    };
+    constexpr Square kSquares[] = {{64, 4}, {32, 8}, {256, 36}, {1024, 68}};
+    for (std::uint32_t i = 0; i < 2000; ++i) {
+        const Square square = kSquares[i % 4];
         const glm::vec3 d = glm::normalize(glm::vec3(normal(random), normal(random), normal(random)));
         const glm::vec3 a = glm::abs(d);
         const std::uint32_t axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
         const std::uint32_t face = axis * 2 + (d[static_cast<int>(axis)] < 0.0f ? 1u : 0u);
-        const ShadowView view = makeShadowView(light, face, 64, 4, origin);
+        const ShadowView view = makeShadowView(light, face, square.sizePx, square.guardTexels, origin);
         const glm::vec4 clip =
             glm::make_mat4(view.clipFromWorld) * glm::vec4(glm::vec3(light.position - origin) + d * 5.0f, 1.0f);
         const glm::vec3 ndc = glm::vec3(clip) / clip.w;
-        // Four texels of guard band on each side: the face itself ends at (32 - 4) / 32.
-        EXPECT_LE(std::max(std::abs(ndc.x), std::abs(ndc.y)), 28.0f / 32.0f + 1e-4f);
+        // In texels from the middle: how far off the axis, as a share of the face without its guard texels.
+        const float half = 0.5f * static_cast<float>(square.sizePx);
+        const glm::vec3 across = glm::vec3(a[(axis + 1) % 3], a[(axis + 2) % 3], 0.0f) / a[static_cast<int>(axis)];
+        EXPECT_NEAR(half * std::max(std::abs(ndc.x), std::abs(ndc.y)),
+                    (half - static_cast<float>(square.guardTexels)) * std::max(across.x, across.y), 1e-4f * half);
         EXPECT_GT(ndc.z, 0.0f);
         EXPECT_LT(ndc.z, 1.0f);
         const float n = view.nearMetres, f = view.farMetres;
         const float expected = -n / (f - n) + n * f / (f - n) / (5.0f * a[static_cast<int>(axis)]);
         EXPECT_NEAR(ndc.z, expected, 1e-5f * n);
     }
+}
+
+TEST(ShadowPlan, OnlySixFacesGetMoreGuardTexels) {
+    ShadowLight point, spot, wide;
+    spot.kind = wide.kind = LightKind::Spot;
+    wide.outerConeAngle = 1.4f;
+    ShadowPlanSettings settings;
+    EXPECT_EQ(guardTexelsOf(settings, point, 512), 4u) << "off by default";
+    settings.faceGuardTexels = 16;
+    EXPECT_EQ(guardTexelsOf(settings, point, 512), 20u);
+    EXPECT_EQ(guardTexelsOf(settings, wide, 512), 20u);
+    EXPECT_EQ(guardTexelsOf(settings, spot, 512), 4u);
+    // At most an eighth of the square.
+    EXPECT_EQ(guardTexelsOf(settings, point, 128), 20u);
+    EXPECT_EQ(guardTexelsOf(settings, point, 64), 12u);
+    settings.faceGuardTexels = ~0u;
+    EXPECT_EQ(guardTexelsOf(settings, point, 32), 8u);
+}
+
+// The same squares in the same places, and other matrices of what has six faces.
+TEST(ShadowPlan, WiderFacesKeepTheirSquares) {
+    const std::vector<ShadowLight> lights = randomLights(40, 5);
+    ShadowPlanCamera camera;
+    camera.position = {3.0, 2.0, 1.0};
+    ShadowPlanner planner({});
+    const ShadowPlan narrow = planner.plan(lights, camera, {}, {});
+    planner.setFaceGuardTexels(24);
+    const ShadowPlan wide = planner.plan(lights, camera, {}, {});
+    ASSERT_EQ(wide.views.size(), narrow.views.size());
+    std::size_t faces = 0, cones = 0;
+    for (std::size_t i = 0; i < wide.views.size(); ++i) {
+        const PlannedView &a = narrow.views[i], &b = wide.views[i];
+        EXPECT_TRUE(a.light == b.light && a.face == b.face && a.x == b.x && a.y == b.y && a.size == b.size);
+        EXPECT_EQ(a.guardTexels, 4u);
+        const bool six = shadowFaces(lights[a.light]) == 6;
+        EXPECT_EQ(b.guardTexels, six ? 4u + std::min(24u, b.size / 8) : 4u);
+        EXPECT_EQ(std::ranges::equal(a.view.clipFromWorld, b.view.clipFromWorld), !six);
+        ++(six ? faces : cones);
+        if (!six) continue;
+        const ShadowView right = makeShadowView(lights[b.light], b.face, b.size, b.guardTexels, {});
+        EXPECT_TRUE(std::ranges::equal(b.view.clipFromWorld, right.clipFromWorld));
+    }
+    EXPECT_GT(faces, 60u);
+    EXPECT_GT(cones, 5u);
 }
 
 // Whatever its range is, a lamp has room in its housing, and what is far keeps the precision of floats.

@@ -78,7 +78,7 @@ const char* whatIsWrong(const Light& light) {
     if (!fadeInOrder(light.shadowFadeStartMetres, light.shadowFadeEndMetres)) {
         return "its shadowFadeEndMetres must be at least shadowFadeStartMetres and 0";
     }
-    if (static_cast<std::uint32_t>(light.filter) > gpu::kFilterHost) return "its filter is none of Filter";
+    if (static_cast<std::uint32_t>(light.filter) >= gpu::kFilterCount) return "its filter is none of Filter";
     if (light.pcssPreset >= gpu::kMaxPcssPresets) return "its pcssPreset must be below 4";
     if (!local && light.casts && light.sourceRadius > kLargestAngularRadius) {
         return "its sourceRadius, an angle as it is directional, must be at most 0.5 radians";

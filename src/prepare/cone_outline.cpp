@@ -107,7 +107,7 @@ double searchBound(const LightVolume& s, double a, double b, double nearest, dou
 // The two silhouettes. `slack` is by how much a unit normal's plane is moved outward on the image plane.
 void addSilhouettes(const ScreenGrid& grid, const LightVolume& s, double slack, ConeOutline& out) {
     const Vec3 through = grid.orthographic ? Vec3{0, 0, 1} : s.apexVs;  // every plane wanted holds this direction
-    const double distance = length(through);
+    const double distance = grid.orthographic ? 1 : s.distance;
     if (!(distance > 1e-6 * s.range)) return;
     const Vec3 sight = through * (1.0 / distance);
     const Vec3 side = s.axisVs - sight * dot(s.axisVs, sight);
@@ -118,7 +118,8 @@ void addSilhouettes(const ScreenGrid& grid, const LightVolume& s, double slack, 
     for (const double sign : {-1.0, 1.0}) {
         const Vec3 n = e1 * cosine + e2 * (sign * sine);
         const double c = grid.orthographic ? dot(n, s.apexVs) : -n.z;
-        out.halfPlanes[out.count++] = {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(c + slack)};
+        out.silhouettes[out.silhouetteCount++] = {static_cast<float>(n.x), static_cast<float>(n.y),
+                                                  static_cast<float>(c + slack)};
     }
 }
 
@@ -132,19 +133,15 @@ Interval boundsAlong(const ScreenGrid& grid, const LightVolume& s, const DepthRa
 }
 
 bool holdsEye(const LightVolume& s) {
-    const double distance = length(s.apexVs);
-    return distance <= s.range + s.slack && -dot(s.apexVs, s.axisVs) >= s.cosOuter * distance - s.slack;
+    return s.distance <= s.range + s.slack && -dot(s.apexVs, s.axisVs) >= s.cosOuter * s.distance - s.slack;
 }
 
 }  // namespace
 
-ConeOutline outlineOfCone(const ScreenGrid& grid, const LightVolume& volume) noexcept {
+ConeOutline outlineOfCone(const ScreenGrid& grid, const LightVolume& volume, const DepthRange& depth) noexcept {
     ConeOutline out;
-    out.uLow = out.vLow = -kInfinity;
-    out.uHigh = out.vHigh = kInfinity;
     if (!grid.orthographic && holdsEye(volume)) return out;
 
-    const DepthRange depth = depthRange(volume);
     const double nearest = std::max(depth.nearest, grid.nearMetres);
     // What a step of `slack` metres is on the image plane, where |(u, v, 1)| is below `reach`.
     const double reach =
@@ -159,9 +156,8 @@ ConeOutline outlineOfCone(const ScreenGrid& grid, const LightVolume& volume) noe
     for (const double b : {-kDiagonal, kDiagonal}) {
         const Interval along = boundsAlong(grid, volume, depth, kDiagonal, b);
         if (!std::isfinite(along.low) || !std::isfinite(along.high)) continue;
-        const float a32 = static_cast<float>(kDiagonal), b32 = static_cast<float>(b);
-        out.halfPlanes[out.count++] = {a32, b32, static_cast<float>(along.high + slack)};
-        out.halfPlanes[out.count++] = {-a32, -b32, static_cast<float>(slack - along.low)};
+        out.strips[out.stripCount++] = {static_cast<float>(kDiagonal), static_cast<float>(b),
+                                        static_cast<float>(along.low - slack), static_cast<float>(along.high + slack)};
     }
     return out;
 }

@@ -151,33 +151,6 @@ void fillDirectional(const Light& light, const ViewCamera& camera, VisibleLight&
     out.shadowSourceRadius = static_cast<float>(std::tan(static_cast<double>(light.sourceRadius)));
 }
 
-void fillLocal(const Light& light, const ViewCamera& camera, const PrepareDesc& desc, VisibleLight& out) {
-    const Vec3 positionWs = toVec3(light.position);
-    const double range = rangeOf(light, desc);
-    out.volume = ballVolume(camera, positionWs, range);
-    gpu::GpuLight& g = out.gpu;
-    g.typeAndFlags = gpu::kLightPoint;
-    g.positionWs = toGpu(positionWs);
-    g.rangeMetres = static_cast<float>(range);
-    g.positionVs = toGpu(out.volume.apexVs);
-    if (light.type == LightType::Spot) {
-        const Vec3 directionWs = normalized(light.direction);
-        narrowToCone(out.volume, camera, directionWs, light.outerConeAngle);
-        g.typeAndFlags = gpu::kLightSpot;
-        g.directionWs = toGpu(directionWs);
-        g.directionVs = toGpu(out.volume.axisVs);
-        g.cosOuter = static_cast<float>(std::cos(static_cast<double>(light.outerConeAngle)));
-        g.sinOuter = static_cast<float>(std::sin(static_cast<double>(light.outerConeAngle)));
-    }
-    out.depth = depthRange(out.volume);
-    const double distance = length(out.volume.apexVs);
-    g.lightFade = static_cast<float>(fade(distance, light.fadeStartMetres, light.fadeEndMetres));
-    out.shadowFade = static_cast<float>(fade(distance, light.shadowFadeStartMetres, light.shadowFadeEndMetres));
-    out.casts = light.casts && out.shadowFade > 0.0f;
-    if (out.shadowFade < 1.0f) out.shadowFlags = gpu::kLightShadowFadesBit;
-    out.shadowSourceRadius = light.sourceRadius;
-}
-
 }  // namespace
 
 Result validateLights(std::span<const Light> lights) noexcept {
@@ -223,30 +196,63 @@ void CullAndSort::run(std::span<const Light> lights, const ViewCamera& camera, c
                       const PrepareDesc& desc) {
     candidates_.reserve(lights.size());
     kept_.resize(std::max(kept_.size(), lights.size()), 0);
+    reaches_.resize(kMaxReaches);
     visible_.resize(gpu::kMaxLightsPerView);
     candidates_.clear();
+    std::uint32_t reachCount = 0;
     for (std::uint32_t i = 0; i < lights.size(); ++i) {
         const Light& light = lights[i];
         if (light.mask == 0 || !(light.intensity > 0.0f)) continue;
         const float keep = kept_[i] != 0 ? desc.keepFactor : 1.0f;
         if (light.type == LightType::Directional) {
-            candidates_.push_back({makeSortKey(0, i), light.priority * light.intensity * keep});
+            candidates_.push_back({makeSortKey(0, i), light.priority * light.intensity * keep, 0});
             continue;
         }
-        const double range = rangeOf(light, desc);
-        LightVolume volume = ballVolume(camera, toVec3(light.position), range);
-        const double distance = length(volume.apexVs);
-        if (!(fade(distance, light.fadeStartMetres, light.fadeEndMetres) > 0)) continue;
-        if (!mayBeVisible(volume, frustum)) continue;
-        if (light.type == LightType::Spot) {
-            narrowToCone(volume, camera, normalized(light.direction), light.outerConeAngle);
-            if (!mayBeVisible(volume, frustum)) continue;
-        }
-        candidates_.push_back({makeSortKey(orderedBits(static_cast<float>(depthRange(volume).nearest)), i),
-                               static_cast<float>(importanceOf(light, range, distance) * keep)});
+        Reach& reach = reaches_[reachCount];
+        if (!findReach(light, camera, frustum, desc, reach)) continue;
+        const double importance = importanceOf(light, reach.volume.range, reach.volume.distance);
+        candidates_.push_back({makeSortKey(orderedBits(static_cast<float>(reach.depth.nearest)), i),
+                               static_cast<float>(importance * keep), reachCount});
+        if (reachCount < kReachNotKept) ++reachCount;
     }
     choose();
-    fillVisible(lights, camera, desc);
+    visibleCount_ = 0;
+    directionalCount_ = 0;
+    for (const Candidate& candidate : candidates_) {
+        const Light& light = lights[hostIndexOf(candidate.sortKey)];
+        const bool local = !isDirectional(candidate.sortKey);
+        Reach& reach = reaches_[candidate.reach];
+        if (local && candidate.reach == kReachNotKept) findReach(light, camera, frustum, desc, reach);
+        VisibleLight& out = visible_[visibleCount_++];
+        out = {};
+        out.hostIndex = hostIndexOf(candidate.sortKey);
+        out.directional = !local;
+        out.filter = light.filter;
+        out.pcssPreset = light.pcssPreset;
+        fillCommon(light, out.hostIndex, out.gpu);
+        if (local) {
+            fillLocal(light, reach, out);
+        } else {
+            ++directionalCount_;
+            fillDirectional(light, camera, out);
+        }
+    }
+}
+
+// False where the view does not see the light.
+bool CullAndSort::findReach(const Light& light, const ViewCamera& camera, const Frustum& frustum,
+                            const PrepareDesc& desc, Reach& out) {
+    out.volume = ballVolume(camera, toVec3(light.position), rangeOf(light, desc));
+    if (!(fade(out.volume.distance, light.fadeStartMetres, light.fadeEndMetres) > 0)) return false;
+    if (!mayBeVisible(out.volume, frustum)) return false;
+    if (light.type == LightType::Spot) {
+        out.directionWs = normalized(light.direction);
+        out.cosConeAngle = std::cos(static_cast<double>(light.outerConeAngle));
+        narrowToCone(out.volume, camera, out.directionWs, out.cosConeAngle);
+        if (!mayBeVisible(out.volume, frustum)) return false;
+    }
+    out.depth = depthRange(out.volume);
+    return true;
 }
 
 // Cuts the candidates down to 1024, sorts them, and remembers them for the next frame.
@@ -269,25 +275,27 @@ void CullAndSort::choose() {
     for (const Candidate& candidate : candidates_) kept_[hostIndexOf(candidate.sortKey)] = 1;
 }
 
-void CullAndSort::fillVisible(std::span<const Light> lights, const ViewCamera& camera, const PrepareDesc& desc) {
-    visibleCount_ = 0;
-    directionalCount_ = 0;
-    for (const Candidate& candidate : candidates_) {
-        VisibleLight& out = visible_[visibleCount_++];
-        out = {};
-        out.hostIndex = hostIndexOf(candidate.sortKey);
-        out.directional = isDirectional(candidate.sortKey);
-        const Light& light = lights[out.hostIndex];
-        fillCommon(light, out.hostIndex, out.gpu);
-        out.filter = light.filter;
-        out.pcssPreset = light.pcssPreset;
-        if (out.directional) {
-            ++directionalCount_;
-            fillDirectional(light, camera, out);
-        } else {
-            fillLocal(light, camera, desc, out);
-        }
+void CullAndSort::fillLocal(const Light& light, const Reach& reach, VisibleLight& out) {
+    out.volume = reach.volume;
+    out.depth = reach.depth;
+    gpu::GpuLight& g = out.gpu;
+    g.typeAndFlags = gpu::kLightPoint;
+    g.positionWs = toGpu(toVec3(light.position));
+    g.rangeMetres = static_cast<float>(reach.volume.range);
+    g.positionVs = toGpu(reach.volume.apexVs);
+    if (reach.volume.spot) {
+        g.typeAndFlags = gpu::kLightSpot;
+        g.directionWs = toGpu(reach.directionWs);
+        g.directionVs = toGpu(reach.volume.axisVs);
+        g.cosOuter = static_cast<float>(reach.cosConeAngle);
+        g.sinOuter = static_cast<float>(std::sin(static_cast<double>(light.outerConeAngle)));
     }
+    const double distance = reach.volume.distance;
+    g.lightFade = static_cast<float>(fade(distance, light.fadeStartMetres, light.fadeEndMetres));
+    out.shadowFade = static_cast<float>(fade(distance, light.shadowFadeStartMetres, light.shadowFadeEndMetres));
+    out.casts = light.casts && out.shadowFade > 0.0f;
+    if (out.shadowFade < 1.0f) out.shadowFlags = gpu::kLightShadowFadesBit;
+    out.shadowSourceRadius = light.sourceRadius;
 }
 
 }  // namespace gnomon::prepare

@@ -51,11 +51,25 @@ private:
     struct Candidate {
         std::uint64_t sortKey;  // directional lights first; then depth; then host index
         float importance;
+        std::uint32_t reach;  // index into reaches_; nothing for directional lights
     };
+    // What culling finds out about a point or spot light, and its entry in the lists needs.
+    struct Reach {
+        LightVolume volume;
+        DepthRange depth;
+        Vec3 directionWs;         // spot: unit
+        double cosConeAngle = 0;  // spot
+    };
+    // The first 2047 reaches are kept. The last place is for all others, which are found once more if they are chosen.
+    static constexpr std::uint32_t kMaxReaches = 2048, kReachNotKept = kMaxReaches - 1;
+
+    static bool findReach(const Light& light, const ViewCamera& camera, const Frustum& frustum, const PrepareDesc& desc,
+                          Reach& out);
+    static void fillLocal(const Light& light, const Reach& reach, VisibleLight& out);
     void choose();
-    void fillVisible(std::span<const Light> lights, const ViewCamera& camera, const PrepareDesc& desc);
 
     std::vector<Candidate> candidates_;
+    std::vector<Reach> reaches_;
     std::vector<std::uint8_t> kept_;  // by host index: in the lists last frame
     std::vector<VisibleLight> visible_;
     std::uint32_t visibleCount_ = 0, directionalCount_ = 0, droppedCount_ = 0;

@@ -56,17 +56,17 @@ Frustum frustumOf(const ViewCamera& camera, double widthPx, double heightPx) noe
 LightVolume ballVolume(const ViewCamera& camera, Vec3 positionWs, double rangeMetres) noexcept {
     LightVolume volume;
     volume.apexVs = camera.positionVs(positionWs);
+    volume.distance = length(volume.apexVs);
     volume.range = rangeMetres;
     const double largest =
-        std::max(largestCoordinate(camera.eyeWs), largestCoordinate(positionWs)) + length(volume.apexVs) + rangeMetres;
+        std::max(largestCoordinate(camera.eyeWs), largestCoordinate(positionWs)) + volume.distance + rangeMetres;
     volume.slack = kRelativeSlack * largest;
     return volume;
 }
 
-void narrowToCone(LightVolume& volume, const ViewCamera& camera, Vec3 directionWs, double outerConeAngle) noexcept {
+void narrowToCone(LightVolume& volume, const ViewCamera& camera, Vec3 directionWs, double cosine) noexcept {
     volume.spot = true;
     volume.axisVs = camera.directionVs(directionWs);
-    const double cosine = std::cos(outerConeAngle);
     const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
     const double widen = kAngleSlack + kCosineSlack / std::max(sine, 1e-3);
     // cos and sin of (angle + widen), for widen of at most 1.01e-3.
@@ -76,19 +76,20 @@ void narrowToCone(LightVolume& volume, const ViewCamera& camera, Vec3 directionW
 }
 
 double support(const LightVolume& volume, Vec3 normal) noexcept {
-    const double squared = dot(normal, normal);
-    const double normalLength = std::sqrt(squared);
-    const double atApex = dot(normal, volume.apexVs) + volume.slack * normalLength;
-    if (!volume.spot) return atApex + volume.range * normalLength;
+    const double atApex = dot(normal, volume.apexVs) + volume.slack;
+    if (!volume.spot) return atApex + volume.range;
     const double along = dot(normal, volume.axisVs);
-    if (along >= normalLength * volume.cosOuter) return atApex + volume.range * normalLength;
-    const double across = std::sqrt(std::max(0.0, squared - along * along));
+    if (along >= volume.cosOuter) return atApex + volume.range;
+    const double across = std::sqrt(std::max(0.0, 1 - along * along));
     return atApex + volume.range * std::max(0.0, along * volume.cosOuter + across * volume.sinOuter);
 }
 
 bool mayBeVisible(const LightVolume& volume, const Frustum& frustum) noexcept {
     for (int i = 0; i < frustum.count; ++i) {
-        if (support(volume, frustum.planes[i].inward) < frustum.planes[i].offset) return false;
+        const Plane& plane = frustum.planes[i];
+        // The apex alone is enough, and mostly it is inside.
+        if (dot(plane.inward, volume.apexVs) + volume.slack >= plane.offset) continue;
+        if (support(volume, plane.inward) < plane.offset) return false;
     }
     return true;
 }

@@ -11,7 +11,8 @@ namespace gnomon::prepare {
 /// arithmetic on the GPU may find the light where these bounds say it is not.
 struct LightVolume {
     Vec3 apexVs;
-    double range = 0;  // widened
+    double distance = 0;  // of the apex from the eye
+    double range = 0;     // widened
     bool spot = false;
     Vec3 axisVs;          // spot: unit
     double cosOuter = 0;  // spot: of the widened half-angle
@@ -33,10 +34,10 @@ struct Frustum {
 Frustum frustumOf(const ViewCamera& camera, double widthPx, double heightPx) noexcept;
 
 LightVolume ballVolume(const ViewCamera& camera, Vec3 positionWs, double rangeMetres) noexcept;
-/// Narrows a ball to a sector. `directionWs` has unit length.
-void narrowToCone(LightVolume& volume, const ViewCamera& camera, Vec3 directionWs, double outerConeAngle) noexcept;
+/// Narrows a ball to a sector. `directionWs` has unit length; `cosine` is that of the cone's half-angle.
+void narrowToCone(LightVolume& volume, const ViewCamera& camera, Vec3 directionWs, double cosine) noexcept;
 
-/// Largest dot(normal, x) over the volume. The normal may have any length.
+/// Largest dot(normal, x) over the volume. The normal has unit length.
 double support(const LightVolume& volume, Vec3 normal) noexcept;
 
 /// False only if the volume lies wholly beyond one plane.

@@ -8,18 +8,17 @@ namespace gnomon::prepare {
 namespace {
 
 struct Sphere {
-    Vec3 centre;
+    double distance;  // of the centre from the eye
     double radius;
 };
 
 // Around what the light reaches: for a spot of up to 60 degrees, around its cone with its round cap.
-Sphere reachOf(const VisibleLight& light, const ViewCamera& camera) {
-    const Vec3 apex = camera.positionVs({light.gpu.positionWs.x, light.gpu.positionWs.y, light.gpu.positionWs.z});
+Sphere reachOf(const VisibleLight& light) {
     const double range = light.gpu.rangeMetres, cosine = light.gpu.cosOuter;
-    if (!light.volume.spot || cosine < 0.5) return {apex, range};
+    if (!light.volume.spot || cosine < 0.5) return {light.volume.distance, range};
     const double radius = range / (2.0 * cosine);
     const Vec3 axis = {light.gpu.directionVs.x, light.gpu.directionVs.y, light.gpu.directionVs.z};
-    return {apex + axis * radius, radius};
+    return {length(light.volume.apexVs + axis * radius), radius};
 }
 
 // Pixels across of a sphere. From within, a sphere fills the view: the eye is taken to be no nearer to the centre than
@@ -27,7 +26,7 @@ Sphere reachOf(const VisibleLight& light, const ViewCamera& camera) {
 float diameterPx(const Sphere& sphere, const ViewCamera& camera, double pxPerUnit) {
     const double metres = 2.0 * sphere.radius;
     if (camera.orthographic) return static_cast<float>(metres * pxPerUnit);
-    const double nearest = std::max(length(sphere.centre), 0.5 * sphere.radius);
+    const double nearest = std::max(sphere.distance, 0.5 * sphere.radius);
     return nearest > 0.0 ? static_cast<float>(metres * pxPerUnit / nearest) : 0.0f;
 }
 
@@ -50,10 +49,9 @@ LightOnScreen measure(const VisibleLight& light, const ViewCamera& camera, float
         return out;
     }
     out.type = light.volume.spot ? LightType::Spot : LightType::Point;
-    const Sphere reach = reachOf(light, camera);
+    const Sphere reach = reachOf(light);
     out.reachDiameterPx = diameterPx(reach, camera, pxPerUnit);
-    const Vec3 place = camera.positionVs({light.gpu.positionWs.x, light.gpu.positionWs.y, light.gpu.positionWs.z});
-    out.sourceDiameterPx = diameterPx({place, light.gpu.sourceRadius}, camera, pxPerUnit);
+    out.sourceDiameterPx = diameterPx({light.volume.distance, light.gpu.sourceRadius}, camera, pxPerUnit);
     out.nearestMetres = static_cast<float>(std::max(light.depth.nearest, 0.0));
     out.farthestMetres = static_cast<float>(light.depth.farthest);
     return out;

@@ -171,7 +171,6 @@ Result Prepare::create(const PrepareDesc& desc, std::unique_ptr<Prepare>& out) n
         state->desc = desc;
         const std::uint32_t columns = divideRoundingUp(desc.maxWidthPx, gpu::kMaskTileSizePx);
         const std::uint32_t rows = divideRoundingUp(desc.maxHeightPx, gpu::kMaskTileSizePx);
-        state->grid.create(rows);
         state->masks.create(columns, rows);
         state->depths.reserve(gpu::kMaxLightsPerView);
         state->onScreen.reserve(gpu::kMaxLightsPerView);
@@ -189,11 +188,8 @@ Result Prepare::resize(const PrepareDesc& desc) noexcept {
     try {
         const std::uint32_t columns = divideRoundingUp(desc.maxWidthPx, gpu::kMaskTileSizePx);
         const std::uint32_t rows = divideRoundingUp(desc.maxHeightPx, gpu::kMaskTileSizePx);
-        prepare::ScreenGrid grid;
         prepare::TileLightMasks masks;
-        grid.create(rows);
         masks.create(columns, rows);
-        s.grid = std::move(grid);
         s.masks = std::move(masks);
     } catch (const std::bad_alloc&) {
         return Result::failure(Status::OutOfMemory, "Prepare::resize found no memory; lower the maximum extent.");

@@ -18,8 +18,14 @@
 // So a row costs one or two square roots, in a loop over boundaries without branches.
 // Spots are cut further by straight lines (cone_outline.cpp). A light that covers all four corners of the screen covers
 // all of it, by convexity, and writes no rows.
-// Vectorised, the whole phase gains a mere 5 % (an AMD EPYC of family 26, GCC 12). GCC does it only under
-// -fno-math-errno, so no flag is set.
+//
+// Loops over rows and boundaries are written so that compilers vectorise them:
+// - They have no branches, and write to arrays of one struct, which cannot alias each other. Ranges of rows are passed
+//   by value, so that no store can change them.
+// - Boundaries that miss the ball are corrected afterwards. By convexity they come first or last.
+// - GCC and Clang vectorise square roots only under -fno-math-errno, which src/CMakeLists.txt sets.
+// Where every light has a span in every row (Fringe, bench/prepare_benchmark.cpp), that takes a quarter off the whole
+// phase (an AMD EPYC of family 25, GCC 12, SSE2).
 //
 // Parallel view: the image of a ball is a disc. It is smaller where near or far plane cut off the ball's larger half.
 // Rounding: the loop is float. Next to the uppermost and lowest point of the image, p^2 is a small difference. So the
@@ -54,38 +60,38 @@ struct BallRows {
     bool inFront;  // wholly in front of the near plane
 };
 
-// Wholly in front of the near plane: both tangents count everywhere.
-void extentsInFront(const ScreenGrid& grid, const BallRows& ball, std::uint32_t first, std::uint32_t last, float* low,
-                    float* high) {
-    const float *vs = grid.boundaryV.data(), *secants = grid.boundarySecant.data(),
-                *cosines = grid.boundaryCosine.data();
+// Boundaries first to last - 1 of a light.
+struct BoundaryRange {
+    std::uint32_t first, last;
+};
+
+// Wholly in front of the near plane: both tangents count everywhere. In two loops, so that compilers vectorise both.
+void extentsInFront(const ScreenGrid& grid, const BallRows& ball, BoundaryRange range, RowExtents& rows) {
     const float x = ball.x, y = ball.y, z = ball.z, radius2 = ball.radius2, tangent = ball.tangent;
-    for (std::uint32_t j = first; j < last; ++j) {
-        const float s = (vs[j] * y + z) * cosines[j];
-        const float across = (y - vs[j] * z) * cosines[j];
+    for (std::uint32_t j = range.first; j < range.last; ++j) {
+        const float v = grid.boundaryV[j], secant = grid.boundarySecant[j], cosine = grid.boundaryCosine[j];
+        const float s = (v * y + z) * cosine;
+        const float across = (y - v * z) * cosine;
         const float disc2 = radius2 - across * across;
         const float disc = std::sqrt(disc2 > 0.0f ? disc2 : 0.0f);
         const float a = tangent * x, b = disc * s, c = tangent * s, d = disc * x;
-        const float smallest = secants[j] * (a - b) / (c + d);
-        const float largest = secants[j] * (a + b) / (c - d);
-        low[j] = disc2 >= 0.0f ? smallest : kNowhere;
-        high[j] = disc2 >= 0.0f ? largest : -kNowhere;
+        rows.boundaryDisc2[j] = disc2;
+        rows.boundaryLow[j] = secant * (a - b) / (c + d);
+        rows.boundaryHigh[j] = secant * (a + b) / (c - d);
     }
 }
 
 // Cut by the near plane.
-void extentsCut(const ScreenGrid& grid, const BallRows& ball, std::uint32_t first, std::uint32_t last, float* low,
-                float* high) {
-    const float *vs = grid.boundaryV.data(), *secants = grid.boundarySecant.data(),
-                *cosines = grid.boundaryCosine.data();
+void extentsCut(const ScreenGrid& grid, const BallRows& ball, BoundaryRange range, RowExtents& rows) {
     const BallRows l = ball;  // a copy, which the outputs cannot alias
     const float perNear = 1.0f / l.nearMetres;
-    for (std::uint32_t j = first; j < last; ++j) {
-        const float s = (vs[j] * l.y + l.z) * cosines[j];
-        const float across = (l.y - vs[j] * l.z) * cosines[j];
+    for (std::uint32_t j = range.first; j < range.last; ++j) {
+        const float v = grid.boundaryV[j], secant = grid.boundarySecant[j], cosine = grid.boundaryCosine[j];
+        const float s = (v * l.y + l.z) * cosine;
+        const float across = (l.y - v * l.z) * cosine;
         const float disc2 = l.radius2 - across * across;
         const float disc = std::sqrt(disc2 > 0.0f ? disc2 : 0.0f);
-        const float nearS = l.nearMetres * secants[j];
+        const float nearS = l.nearMetres * secant;
         const float cut2 = disc2 - (nearS - s) * (nearS - s);
         const float cut = std::sqrt(cut2 > 0.0f ? cut2 : 0.0f);
         const float a = l.tangent * l.x, b = disc * s, c = l.tangent * s, d = disc * l.x;
@@ -93,22 +99,23 @@ void extentsCut(const ScreenGrid& grid, const BallRows& ball, std::uint32_t firs
         const float least = nearS * (l.tangent2 + disc2);
         const bool tangentLow = l.tangent2 > 0.0f && (c + d) * l.tangent >= least;
         const bool tangentHigh = l.tangent2 > 0.0f && (c - d) * l.tangent >= least;
-        const float smallest = tangentLow ? secants[j] * (a - b) / (c + d) : (l.x - cut) * perNear;
-        const float largest = tangentHigh ? secants[j] * (a + b) / (c - d) : (l.x + cut) * perNear;
+        const float smallest = tangentLow ? secant * (a - b) / (c + d) : (l.x - cut) * perNear;
+        const float largest = tangentHigh ? secant * (a + b) / (c - d) : (l.x + cut) * perNear;
         const bool empty = disc2 < 0.0f || (s < nearS && cut2 < 0.0f);
-        low[j] = empty ? kNowhere : smallest;
-        high[j] = empty ? -kNowhere : largest;
+        rows.boundaryDisc2[j] = empty ? -1.0f : disc2;
+        rows.boundaryLow[j] = smallest;
+        rows.boundaryHigh[j] = largest;
     }
 }
 
-void extentsParallel(const ScreenGrid& grid, const BallRows& ball, std::uint32_t first, std::uint32_t last, float* low,
-                     float* high) {
-    const float* vs = grid.boundaryV.data();
-    for (std::uint32_t j = first; j < last; ++j) {
-        const float disc2 = ball.radius2 - (vs[j] - ball.y) * (vs[j] - ball.y);
+void extentsParallel(const ScreenGrid& grid, const BallRows& ball, BoundaryRange range, RowExtents& rows) {
+    for (std::uint32_t j = range.first; j < range.last; ++j) {
+        const float v = grid.boundaryV[j];
+        const float disc2 = ball.radius2 - (v - ball.y) * (v - ball.y);
         const float disc = std::sqrt(disc2 > 0.0f ? disc2 : 0.0f);
-        low[j] = disc2 >= 0.0f ? ball.x - disc : kNowhere;
-        high[j] = disc2 >= 0.0f ? ball.x + disc : -kNowhere;
+        rows.boundaryDisc2[j] = disc2;
+        rows.boundaryLow[j] = ball.x - disc;
+        rows.boundaryHigh[j] = ball.x + disc;
     }
 }
 
@@ -123,20 +130,18 @@ DiscExtent discExtent(double x, double z, double radius, double nearest) {
     if (z + radius < nearest) return out;
     out.empty = false;
     const double power = x * x + z * z - radius * radius;
+    bool lowIsTangent = false, highIsTangent = false;
+    if (power > 0) {
+        const double tangent = std::sqrt(power), scale = tangent / (x * x + z * z);
+        out.zLow = scale * (tangent * z + radius * x), out.zHigh = scale * (tangent * z - radius * x);
+        lowIsTangent = out.zLow >= nearest, highIsTangent = out.zHigh >= nearest;
+        if (lowIsTangent) out.low = scale * (tangent * x - radius * z) / out.zLow;
+        if (highIsTangent) out.high = scale * (tangent * x + radius * z) / out.zHigh;
+    }
+    if (lowIsTangent && highIsTangent) return out;
     const double cut = std::sqrt(std::max(0.0, radius * radius - (nearest - z) * (nearest - z)));
-    out.low = (x - cut) / nearest, out.high = (x + cut) / nearest;
-    out.zLow = out.zHigh = nearest;
-    if (power <= 0) return out;
-    const double tangent = std::sqrt(power), scale = tangent / (x * x + z * z);
-    const double zLow = scale * (tangent * z + radius * x), zHigh = scale * (tangent * z - radius * x);
-    if (zLow >= nearest) {
-        out.zLow = zLow;
-        out.low = scale * (tangent * x - radius * z) / zLow;
-    }
-    if (zHigh >= nearest) {
-        out.zHigh = zHigh;
-        out.high = scale * (tangent * x + radius * z) / zHigh;
-    }
+    if (!lowIsTangent) out.low = (x - cut) / nearest, out.zLow = nearest;
+    if (!highIsTangent) out.high = (x + cut) / nearest, out.zHigh = nearest;
     return out;
 }
 
@@ -163,49 +168,74 @@ double radiusSeenParallel(const ScreenGrid& grid, double z, double radius) {
     return beyond > radius ? -1.0 : std::sqrt(radius * radius - beyond * beyond);
 }
 
-// Row in which v lies, possibly outside the screen.
-double rowOf(const ScreenGrid& grid, double v) {
-    return std::floor((v - grid.vMin) / grid.vPerTile);
-}
-std::uint32_t clampRow(const ScreenGrid& grid, double row) {
-    return static_cast<std::uint32_t>(std::clamp(row, 0.0, static_cast<double>(grid.rows)));
+// Row in which v lies; 0 above the screen, grid.rows below it. Clamped first: truncation is floor for what is not
+// negative.
+std::uint32_t rowOf(const ScreenGrid& grid, double v) {
+    const double row = (v - grid.vMin) * grid.tilesPerV;
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::clamp(row, 0.0, static_cast<double>(grid.rows))));
 }
 
 // Widens the rows that hold a leftmost or rightmost point; two, where it is next to a boundary.
 template <class Widen>
-void atPeak(const ScreenGrid& grid, const Coverage& coverage, double v, Widen&& widen) {
-    const std::uint32_t first = clampRow(grid, rowOf(grid, v - grid.uvSlack));
-    const std::uint32_t last = clampRow(grid, rowOf(grid, v + grid.uvSlack));
+void atPeak(const ScreenGrid& grid, Coverage coverage, double v, Widen&& widen) {
+    const std::uint32_t first = rowOf(grid, v - grid.uvSlack);
+    const std::uint32_t last = rowOf(grid, v + grid.uvSlack);
     for (std::uint32_t row = std::max(first, coverage.firstRow); row <= last && row < coverage.lastRow; ++row)
         widen(row);
 }
 
+// Part of the rows' extents of v that the image reaches.
+struct VRange {
+    float low, high;
+    [[nodiscard]] float from(float v) const { return v > low ? v : low; }
+    [[nodiscard]] float to(float v) const { return v < high ? v : high; }
+};
+
 // Cuts the rows' extents by one line. Within a row a line bounds u most loosely at one of its ends.
-void cutRows(const ScreenGrid& grid, const Coverage& coverage, const HalfPlane& line, float vLow, float vHigh,
-             float* low, float* high) {
+void cutByLine(const ScreenGrid& grid, Coverage coverage, const HalfPlane& line, VRange range, RowExtents& rows) {
     if (std::abs(line.a) < kLeastSlope) return;
-    const float perA = 1.0f / line.a;
-    const float* vs = grid.boundaryV.data();
-    for (std::uint32_t row = coverage.firstRow; row < coverage.lastRow; ++row) {
-        const float v0 = vs[row] > vLow ? vs[row] : vLow;
-        const float v1 = vs[row + 1] < vHigh ? vs[row + 1] : vHigh;
-        const float u0 = (line.c - line.b * v0) * perA, u1 = (line.c - line.b * v1) * perA;
-        if (line.a > 0.0f) {
+    const float perA = 1.0f / line.a, b = line.b, c = line.c;
+    const auto uAt = [&](float v) { return (c - b * v) * perA; };
+    if (line.a > 0.0f) {
+        for (std::uint32_t row = coverage.firstRow; row < coverage.lastRow; ++row) {
+            const float u0 = uAt(range.from(grid.boundaryV[row])), u1 = uAt(range.to(grid.boundaryV[row + 1]));
             const float bound = u0 > u1 ? u0 : u1;
-            high[row] = high[row] < bound ? high[row] : bound;
-        } else {
-            const float bound = u0 < u1 ? u0 : u1;
-            low[row] = low[row] > bound ? low[row] : bound;
+            rows.high[row] = rows.high[row] < bound ? rows.high[row] : bound;
         }
+    } else {
+        for (std::uint32_t row = coverage.firstRow; row < coverage.lastRow; ++row) {
+            const float u0 = uAt(range.from(grid.boundaryV[row])), u1 = uAt(range.to(grid.boundaryV[row + 1]));
+            const float bound = u0 < u1 ? u0 : u1;
+            rows.low[row] = rows.low[row] > bound ? rows.low[row] : bound;
+        }
+    }
+}
+
+// Likewise by two parallel lines.
+void cutByStrip(const ScreenGrid& grid, Coverage coverage, const Strip& strip, VRange range, RowExtents& rows) {
+    const float perA = 1.0f / strip.a, b = strip.b, stripLow = strip.low, stripHigh = strip.high;
+    for (std::uint32_t row = coverage.firstRow; row < coverage.lastRow; ++row) {
+        const float bv0 = b * range.from(grid.boundaryV[row]), bv1 = b * range.to(grid.boundaryV[row + 1]);
+        const float low0 = (stripLow - bv0) * perA, low1 = (stripLow - bv1) * perA;
+        const float high0 = (stripHigh - bv0) * perA, high1 = (stripHigh - bv1) * perA;
+        const float low = low0 < low1 ? low0 : low1, high = high0 > high1 ? high0 : high1;
+        rows.low[row] = rows.low[row] > low ? rows.low[row] : low;
+        rows.high[row] = rows.high[row] < high ? rows.high[row] : high;
     }
 }
 
 bool cornersInside(const ScreenGrid& grid, const ConeOutline& outline) {
     if (outline.uLow > grid.uMin || outline.uHigh < grid.uMax) return false;
-    for (int i = 0; i < outline.count; ++i) {
-        const HalfPlane& line = outline.halfPlanes[i];
+    for (int i = 0; i < outline.silhouetteCount; ++i) {
+        const HalfPlane& line = outline.silhouettes[i];
         const double u = line.a > 0 ? grid.uMax : grid.uMin, v = line.b > 0 ? grid.vMax : grid.vMin;
         if (line.a * u + line.b * v > line.c) return false;
+    }
+    for (int i = 0; i < outline.stripCount; ++i) {
+        const Strip& strip = outline.strips[i];
+        const bool rises = strip.b > 0;
+        if (strip.a * grid.uMax + strip.b * (rises ? grid.vMax : grid.vMin) > strip.high) return false;
+        if (strip.a * grid.uMin + strip.b * (rises ? grid.vMin : grid.vMax) < strip.low) return false;
     }
     return true;
 }
@@ -230,65 +260,61 @@ BallRows ballRows(const ScreenGrid& grid, Vec3 centre, double radius, double see
             centre.z - radius >= grid.nearMetres};
 }
 
-// Extent of u on the boundaries first to last - 1; low above high where a boundary misses the ball.
-void extentsOf(const ScreenGrid& grid, const BallRows& ball, std::uint32_t first, std::uint32_t last, float* low,
-               float* high) {
+// Extent of u on the boundaries; low above high where a boundary misses the ball.
+void extentsOf(const ScreenGrid& grid, const BallRows& ball, BoundaryRange range, RowExtents& rows) {
     if (grid.orthographic) {
-        extentsParallel(grid, ball, first, last, low, high);
+        extentsParallel(grid, ball, range, rows);
     } else if (ball.inFront) {
-        extentsInFront(grid, ball, first, last, low, high);
+        extentsInFront(grid, ball, range, rows);
     } else {
-        extentsCut(grid, ball, first, last, low, high);
+        extentsCut(grid, ball, range, rows);
     }
+    // The image is convex, so boundaries that miss it come first or last.
+    const auto misses = [&](std::uint32_t j) {
+        if (rows.boundaryDisc2[j] >= 0.0f) return false;
+        rows.boundaryLow[j] = kNowhere;
+        rows.boundaryHigh[j] = -kNowhere;
+        return true;
+    };
+    std::uint32_t first = range.first, last = range.last;
+    while (first < last && misses(first)) ++first;
+    while (first < last && misses(last - 1)) --last;
 }
 
 // From boundaries to rows: the wider of a row's two boundaries, or the image's own end where it lies between.
-void joinBoundaries(const ScreenGrid& grid, const Coverage& coverage, const BallImage& image, const float* low,
-                    const float* high, float* rowLow, float* rowHigh) {
+void joinBoundaries(const ScreenGrid& grid, Coverage coverage, const BallImage& image, RowExtents& rows) {
     for (std::uint32_t row = coverage.firstRow; row < coverage.lastRow; ++row) {
-        rowLow[row] = low[row] < low[row + 1] ? low[row] : low[row + 1];
-        rowHigh[row] = high[row] > high[row + 1] ? high[row] : high[row + 1];
+        const float low0 = rows.boundaryLow[row], low1 = rows.boundaryLow[row + 1];
+        const float high0 = rows.boundaryHigh[row], high1 = rows.boundaryHigh[row + 1];
+        rows.low[row] = low0 < low1 ? low0 : low1;
+        rows.high[row] = high0 > high1 ? high0 : high1;
     }
     const auto uLow = static_cast<float>(image.uLow), uHigh = static_cast<float>(image.uHigh);
-    atPeak(grid, coverage, image.vOfLow, [&](std::uint32_t row) { rowLow[row] = std::min(rowLow[row], uLow); });
-    atPeak(grid, coverage, image.vOfHigh, [&](std::uint32_t row) { rowHigh[row] = std::max(rowHigh[row], uHigh); });
+    atPeak(grid, coverage, image.vOfLow, [&](std::uint32_t row) { rows.low[row] = std::min(rows.low[row], uLow); });
+    atPeak(grid, coverage, image.vOfHigh, [&](std::uint32_t row) { rows.high[row] = std::max(rows.high[row], uHigh); });
 }
 
-void cutByOutline(const ScreenGrid& grid, const Coverage& coverage, const ConeOutline& outline, double vLow,
-                  double vHigh, float* rowLow, float* rowHigh) {
-    const auto clampToFloat = [](double u) { return static_cast<float>(std::clamp<double>(u, -kNowhere, kNowhere)); };
-    const float uLow = clampToFloat(outline.uLow), uHigh = clampToFloat(outline.uHigh);
-    for (std::uint32_t row = coverage.firstRow; row < coverage.lastRow; ++row) {
-        rowLow[row] = rowLow[row] > uLow ? rowLow[row] : uLow;
-        rowHigh[row] = rowHigh[row] < uHigh ? rowHigh[row] : uHigh;
-    }
-    for (int i = 0; i < outline.count; ++i) {
-        cutRows(grid, coverage, outline.halfPlanes[i], clampToFloat(vLow), clampToFloat(vHigh), rowLow, rowHigh);
-    }
+float clampToFloat(double u) {
+    return static_cast<float>(std::clamp<double>(u, -kNowhere, kNowhere));
 }
 
-// From u to columns, rounded outward and clamped to the screen.
-void spansOf(const ScreenGrid& grid, const Coverage& coverage, const float* rowLow, const float* rowHigh,
-             TileSpan* spans) {
-    const auto tilesPerU = static_cast<float>(1 / grid.uPerTile);
-    const auto lowOffset = static_cast<float>((-grid.uMin - grid.uvSlack) / grid.uPerTile);
-    const auto highOffset = static_cast<float>((-grid.uMin + grid.uvSlack) / grid.uPerTile + 1);
+// From u to columns, rounded outward and clamped to the screen. No extent reaches beyond uLow and uHigh.
+void columnsOf(const ScreenGrid& grid, Coverage coverage, float uLow, float uHigh, RowExtents& rows) {
+    const float tilesPerU = grid.tilesPerU, firstOffset = grid.firstColumnOffset, endOffset = grid.endColumnOffset;
     const auto columns = static_cast<float>(grid.columns);
     for (std::uint32_t row = coverage.firstRow; row < coverage.lastRow; ++row) {
-        const float first = rowLow[row] * tilesPerU + lowOffset, last = rowHigh[row] * tilesPerU + highOffset;
+        const float low = rows.low[row] > uLow ? rows.low[row] : uLow;
+        const float high = rows.high[row] < uHigh ? rows.high[row] : uHigh;
+        float first = low * tilesPerU + firstOffset, end = high * tilesPerU + endOffset;
         // Clamped first: truncation is floor for what is not negative.
-        spans[row].first = static_cast<std::uint16_t>(static_cast<int>(std::min(std::max(first, 0.0f), columns)));
-        spans[row].last = static_cast<std::uint16_t>(static_cast<int>(std::min(std::max(last, 0.0f), columns)));
+        first = first > 0.0f ? first : 0.0f;
+        end = end > 0.0f ? end : 0.0f;
+        rows.firstColumn[row] = static_cast<std::int32_t>(first < columns ? first : columns);
+        rows.endColumn[row] = static_cast<std::int32_t>(end < columns ? end : columns);
     }
 }
 
 }  // namespace
-
-void ScreenGrid::create(std::uint32_t maxRows) {
-    boundaryV.resize(maxRows + 1);
-    boundarySecant.resize(maxRows + 1);
-    boundaryCosine.resize(maxRows + 1);
-}
 
 void ScreenGrid::set(const ViewCamera& camera, std::uint32_t widthPx, std::uint32_t heightPx) noexcept {
     columns = gpu::divideRoundingUp(widthPx, gpu::kMaskTileSizePx);
@@ -303,10 +329,13 @@ void ScreenGrid::set(const ViewCamera& camera, std::uint32_t widthPx, std::uint3
     uMax = uMin + uPerPx * widthPx;
     vMin = flipY * camera.xyOffset[1];
     vMax = vMin + vPerPx * heightPx;
-    uPerTile = uPerPx * gpu::kMaskTileSizePx;
-    vPerTile = vPerPx * gpu::kMaskTileSizePx;
+    const double uPerTile = uPerPx * gpu::kMaskTileSizePx, vPerTile = vPerPx * gpu::kMaskTileSizePx;
+    tilesPerV = 1 / vPerTile;
     const double largest = std::max({std::abs(uMin), std::abs(uMax), std::abs(vMin), std::abs(vMax)});
     uvSlack = kSlackPx * std::max(uPerPx, vPerPx) + kFloatSlack * largest;
+    tilesPerU = static_cast<float>(1 / uPerTile);
+    firstColumnOffset = static_cast<float>((-uMin - uvSlack) / uPerTile);
+    endColumnOffset = static_cast<float>((-uMin + uvSlack) / uPerTile + 1);
     for (std::uint32_t row = 0; row <= rows; ++row) {
         const double v = vMin + vPerTile * row, secant = std::sqrt(1 + v * v);
         boundaryV[row] = static_cast<float>(v);
@@ -315,36 +344,27 @@ void ScreenGrid::set(const ViewCamera& camera, std::uint32_t widthPx, std::uint3
     }
 }
 
-void ScreenBounds::create(std::uint32_t maxRows) {
-    boundaryLow_.resize(maxRows + 1);
-    boundaryHigh_.resize(maxRows + 1);
-    rowLow_.resize(maxRows);
-    rowHigh_.resize(maxRows);
-    spans_.resize(maxRows);
-}
-
-Coverage ScreenBounds::cover(const ScreenGrid& grid, const LightVolume& hostVolume) noexcept {
+Coverage ScreenBounds::cover(const ScreenGrid& grid, const LightVolume& hostVolume, const DepthRange& depth) noexcept {
     const LightVolume volume = flipped(grid, hostVolume);
     const Vec3 centre = volume.apexVs;
-    const double radius = (volume.range + volume.slack) * (1 + kBallSlack) + kBallSlack * length(centre);
+    const double radius = (volume.range + volume.slack) * (1 + kBallSlack) + kBallSlack * volume.distance;
     const double seenRadius = grid.orthographic ? radiusSeenParallel(grid, centre.z, radius) : radius;
     const BallImage image = imageOfBall(grid, centre, radius, seenRadius);
     Coverage coverage;
     if (image.empty) return coverage;
 
     ConeOutline outline;
-    if (volume.spot) outline = outlineOfCone(grid, volume);
-    const double vLow = (volume.spot ? std::max(image.vLow, outline.vLow) : image.vLow) - grid.uvSlack;
-    const double vHigh = (volume.spot ? std::min(image.vHigh, outline.vHigh) : image.vHigh) + grid.uvSlack;
+    if (volume.spot) outline = outlineOfCone(grid, volume, depth);
+    const double vLow = std::max(image.vLow, outline.vLow) - grid.uvSlack;
+    const double vHigh = std::min(image.vHigh, outline.vHigh) + grid.uvSlack;
     if (vHigh < grid.vMin || vLow > grid.vMax) return coverage;
-    coverage.firstRow = clampRow(grid, rowOf(grid, vLow));
-    coverage.lastRow = clampRow(grid, rowOf(grid, vHigh) + 1);
+    coverage.firstRow = rowOf(grid, vLow);
+    coverage.lastRow = std::min(rowOf(grid, vHigh) + 1, grid.rows);
 
     const BallRows ball = ballRows(grid, centre, radius, seenRadius);
-    float *low = boundaryLow_.data(), *high = boundaryHigh_.data();
     const auto boundaryIsFull = [&](std::uint32_t j) {
-        extentsOf(grid, ball, j, j + 1, low, high);
-        return low[j] <= grid.uMin && high[j] >= grid.uMax;
+        extentsOf(grid, ball, {j, j + 1}, rows_);
+        return rows_.boundaryLow[j] <= grid.uMin && rows_.boundaryHigh[j] >= grid.uMax;
     };
     const bool coversSides =
         coverage.firstRow == 0 && coverage.lastRow == grid.rows && image.uLow <= grid.uMin && image.uHigh >= grid.uMax;
@@ -353,10 +373,14 @@ Coverage ScreenBounds::cover(const ScreenGrid& grid, const LightVolume& hostVolu
         coverage.everywhere = true;
         return coverage;
     }
-    extentsOf(grid, ball, coverage.firstRow, coverage.lastRow + 1, low, high);
-    joinBoundaries(grid, coverage, image, low, high, rowLow_.data(), rowHigh_.data());
-    if (volume.spot) cutByOutline(grid, coverage, outline, vLow, vHigh, rowLow_.data(), rowHigh_.data());
-    spansOf(grid, coverage, rowLow_.data(), rowHigh_.data(), spans_.data());
+    extentsOf(grid, ball, {coverage.firstRow, coverage.lastRow + 1}, rows_);
+    joinBoundaries(grid, coverage, image, rows_);
+    const VRange range{clampToFloat(vLow), clampToFloat(vHigh)};
+    for (int i = 0; i < outline.silhouetteCount; ++i) {
+        cutByLine(grid, coverage, outline.silhouettes[i], range, rows_);
+    }
+    for (int i = 0; i < outline.stripCount; ++i) cutByStrip(grid, coverage, outline.strips[i], range, rows_);
+    columnsOf(grid, coverage, clampToFloat(outline.uLow), clampToFloat(outline.uHigh), rows_);
     return coverage;
 }
 

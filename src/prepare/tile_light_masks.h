@@ -27,16 +27,19 @@ public:
 
 private:
     static constexpr std::uint32_t kWords = gpu::kLightGroupCount;
+    void coverRows(const ScreenGrid& grid, Coverage coverage, std::uint32_t light) noexcept;
     void markRow(std::uint32_t row) noexcept;
-    unsigned char* writeRow(const ScreenGrid& grid, unsigned char* destination) noexcept;
+    unsigned char* writeRow(const ScreenGrid& grid, std::uint32_t row, unsigned char* destination) noexcept;
 
     ScreenBounds bounds_;
     std::array<std::uint32_t, kWords> everywhere_{};  // lights that cover the whole screen
-    std::vector<std::uint32_t> spans_;                // up to 1024 per row, packed
-    std::vector<std::uint32_t> spanCounts_;           // by row
-    std::vector<std::uint32_t> tileCounts_;           // by light
-    std::vector<std::uint32_t> changes_;              // of one row: bits that flip at each column's left edge
-    std::vector<std::uint32_t> changedWords_;         // of one row: a bit per word of changes_ that is not zero
+    // By light group and row. Of the group's 32 lights, which have a span of all columns, and which a shorter one. The
+    // spans of the latter, packed: 32 per group and row.
+    std::uint32_t maxRows_ = 0, groupCount_ = 0;
+    std::vector<std::uint32_t> wholeRows_, partOfRows_, spans_;
+    std::vector<std::uint32_t> tileCounts_;  // by light
+    std::vector<std::uint32_t> changes_;     // of one row: bits that flip at each column's left edge
+    std::vector<std::uint8_t> changed_;      // of one row: whether any does
 };
 
 }  // namespace gnomon::prepare

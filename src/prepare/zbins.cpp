@@ -36,8 +36,9 @@ struct BinRange {
 
 BinRange binsOf(const DepthRange& depth, const ZBinLayout& layout) {
     const auto bin = [&](double metres, double slack) {
-        const double b = std::floor((metres - layout.nearDepth) * layout.binsPerMetre + slack);
-        return static_cast<std::uint32_t>(std::clamp(b, 0.0, gpu::kZBinCount - 1.0));
+        const double b = (metres - layout.nearDepth) * layout.binsPerMetre + slack;
+        // Clamped first: truncation is floor for what is not negative.
+        return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::clamp(b, 0.0, gpu::kZBinCount - 1.0)));
     };
     return {bin(depth.nearest, -kBinSlack), bin(depth.farthest, kBinSlack)};
 }
@@ -93,12 +94,14 @@ std::array<std::uint32_t, gpu::kZBinWords> buildZBins(std::span<const DepthRange
     lowest.fill(kNone);
     highest.fill(0);
     const auto count = static_cast<std::uint32_t>(depths.size());
+    std::array<BinRange, gpu::kMaxLightsPerView> ranges;
     Canvas ascending, descending;
     for (std::uint32_t i = 0; i < count; ++i) {
-        ascending.paint(binsOf(depths[i], layout), [&](std::uint32_t b) { lowest[b] = firstIndex + i; });
+        ranges[i] = binsOf(depths[i], layout);
+        ascending.paint(ranges[i], [&](std::uint32_t b) { lowest[b] = firstIndex + i; });
     }
     for (std::uint32_t i = count; i-- > 0;) {
-        descending.paint(binsOf(depths[i], layout), [&](std::uint32_t b) { highest[b] = firstIndex + i; });
+        descending.paint(ranges[i], [&](std::uint32_t b) { highest[b] = firstIndex + i; });
     }
 
     std::array<std::uint32_t, gpu::kZBinWords> words;

@@ -152,7 +152,7 @@ Specialization Context::State::specializationOf(const ShadowSettings& settings) 
 QueueSet queuesOf(FilterSet filters) noexcept {
     QueueSet queues = 0;
     for (std::uint32_t queue = 0; queue < kPairQueueCount; ++queue)
-        queues |= (filters >> queue / kShadowViewsKinds & 1u) << queue;
+        queues |= ((filters & ~kFiltersByTile) >> queue / kShadowViewsKinds & 1u) << queue;
     return queues;
 }
 

@@ -26,7 +26,7 @@ struct GNOMON_HIDDEN Context::State {
     [[nodiscard]] gpu::Specialization specializationOf(const ShadowSettings& settings) const noexcept;
 };
 
-// The queues of all lights that may have these filters.
+// The queues of all lights that may have these filters; some filters need none.
 QueueSet queuesOf(FilterSet filters) noexcept;
 
 }  // namespace gnomon

@@ -8,6 +8,7 @@
 #include "find_lights_approximate/find_lights_approximate.h"
 #include "generate_shadows/classify_pairs.h"
 #include "generate_shadows/filter_pairs.h"
+#include "generate_shadows/filter_tiles.h"
 #include "generate_shadows/search_pairs.h"
 #include "hierarchical_depth/hierarchical_depth.h"
 #include "shadow_bounds/shadow_bounds.h"
@@ -20,6 +21,7 @@ enum PassId : std::uint32_t {
     kPassFindLightsApproximate,
     kPassFindLightsAccurate,
     kPassShadowBounds,
+    kPassFilterTiles,
     kPassClassifyPairs,
     kPassSearchPairs,
     kPassFilterPairs,
@@ -30,8 +32,8 @@ enum PassId : std::uint32_t {
 using PassDeclaration = const Pass& (*)() noexcept;
 inline constexpr PassDeclaration kPasses[] = {
     hierarchicalDepthPass, findLightsApproximatePass, findLightsAccuratePass,
-    shadowBoundsPass,      classifyPairsPass,         searchPairsPass,         filterPairsPass,
-    gatherStatisticsPass,
+    shadowBoundsPass,      filterTilesPass,           classifyPairsPass,
+    searchPairsPass,       filterPairsPass,           gatherStatisticsPass,
 };
 static_assert(std::size(kPasses) == kPassCount);
 

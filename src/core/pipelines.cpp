@@ -57,7 +57,12 @@ Result Pipelines::get(const gpu::Specialization& specialization, QueueSet queues
     out = {};
     for (std::uint32_t pass = 0; pass < kPassCount; ++pass) {
         if (pass == kPassSearchPairs || pass == kPassFilterPairs) continue;
-        const Result got = getOne(static_cast<PassId>(pass), std::bit_cast<Values>(specialization), out.once[pass]);
+        gpu::Specialization own = specialization;
+        if (pass == kPassFilterTiles) {
+            own.filters &= gpu::kFiltersByTile;
+            if (own.filters == 0 && specialization.filters != 0) continue;  // there is nothing for it to do
+        }
+        const Result got = getOne(static_cast<PassId>(pass), std::bit_cast<Values>(own), out.once[pass]);
         if (!got) return got;
     }
     for (std::uint32_t queue = 0; queue < gpu::kPairQueueCount; ++queue) {

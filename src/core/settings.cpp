@@ -1,5 +1,7 @@
 #include "core/settings.h"
 
+#include <cmath>
+
 #include "gpu_interface/numbers.h"
 
 namespace gnomon {
@@ -96,8 +98,16 @@ Specialization specializationOf(const ShadowSettings& s) noexcept {
 void writePcssTaps(const ShadowSettings& s, GpuFrame& frame) noexcept {
     for (std::uint32_t i = 0; i < gpu::kMaxPcssPresets; ++i) {
         const PcssTaps& taps = s.pcssPresets[i < s.pcssPresetCount ? i : 0];
-        frame.pcssTaps[i] = {taps.searchTaps, taps.filterTaps, 1.0f / static_cast<float>(taps.searchTaps),
-                             1.0f / static_cast<float>(taps.filterTaps)};
+        const auto search = static_cast<float>(taps.searchTaps), filter = static_cast<float>(taps.filterTaps);
+        frame.pcssTaps[i] = {taps.searchTaps, taps.filterTaps, 1.0f / (search * search), 1.0f / filter};
+    }
+    // Source: Vogel 1979, "A better way to construct the sunflower head".
+    constexpr double kGoldenAngle = 2.399963229728653;  // pi (3 - sqrt 5)
+    for (std::uint32_t i = 0; i < gpu::kMaxPcssTaps; ++i) {
+        const double angle = kGoldenAngle * i, place = i + 0.5;
+        const double x = std::cos(angle), y = std::sin(angle), filtered = std::sqrt(place), searched = place * place;
+        frame.pcssPattern[i] = {{static_cast<float>(filtered * x), static_cast<float>(filtered * y)},
+                                {static_cast<float>(searched * x), static_cast<float>(searched * y)}};
     }
 }
 

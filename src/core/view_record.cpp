@@ -55,6 +55,18 @@ void recordQueues(View::State& state, VkCommandBuffer commands, PassId id,
     if (count != 0) recordPass(state, commands, id, {dispatches, count});
 }
 
+// Phase 4 of the filters that have queues.
+void recordPairs(View::State& state, VkCommandBuffer commands) {
+    Dispatch classify = {.pipeline = state.pipelines.once[kPassClassifyPairs]};
+    classify.indirect = state.buffers.device[kBufferPairQueues].buffer;
+    classify.offset = pairHeadOffset(state, offsetof(GpuPairHead, classifyGroupCountX));
+    recordPass(state, commands, kPassClassifyPairs, {&classify, 1});
+    recordQueues(state, commands, kPassSearchPairs, state.pipelines.searchPairs,
+                 offsetof(GpuPairQueue, searchGroupCountX));
+    recordQueues(state, commands, kPassFilterPairs, state.pipelines.filterPairs,
+                 offsetof(GpuPairQueue, filterGroupCountX));
+}
+
 // Images that are bound but never read still need the layout that their descriptor names. This is recorded in every
 // frame, since a host may drop a recorded frame without submitting it.
 void preparePlaceholders(View::State& state, VkCommandBuffer commands) {
@@ -166,18 +178,14 @@ void View::recordShadowBounds(VkCommandBuffer commands) noexcept {
 
 void View::recordGenerateShadows(VkCommandBuffer commands) noexcept {
     State& state = *state_;
-    Dispatch classify = {.pipeline = state.pipelines.once[kPassClassifyPairs]};
-    classify.indirect = state.buffers.device[kBufferPairQueues].buffer;
-    classify.offset = pairHeadOffset(state, offsetof(GpuPairHead, classifyGroupCountX));
-    recordPass(state, commands, kPassClassifyPairs, {&classify, 1});
-    recordQueues(state, commands, kPassSearchPairs, state.pipelines.searchPairs,
-                 offsetof(GpuPairQueue, searchGroupCountX));
-    recordQueues(state, commands, kPassFilterPairs, state.pipelines.filterPairs,
-                 offsetof(GpuPairQueue, filterGroupCountX));
+    // Lights without shadows belong to the tiles if anything does: see filters.glsl.
+    const FilterSet filters = state.frames[state.current].settings.filters;
+    if (filters == 0 || (filters & kFiltersByTile) != 0)
+        recordPass(state, commands, kPassFilterTiles, state.frame.tileCounts.x, state.frame.tileCounts.y);
+    if ((filters & ~kFiltersByTile) != 0) recordPairs(state, commands);
     state.frames[state.current].generated = true;
     recorderOf(state, commands).publish();
 }
-
 void View::recordEndFrame(VkCommandBuffer commands) noexcept {
     State& state = *state_;
     const Functions& vk = state.context->device.vk;

@@ -33,7 +33,7 @@ void writeTileLists(uvec2 tile, uint slotId, uint count, uint casting) {
 
 // Phase 4 walks list space up to here.
 void walkListSpace(uint entries) {
-    uint groups = divideRoundingUp(entries, kWorkGroupSize);
+    uint groups = divideRoundingUp(entries, kPlacesPerClassifyGroup);
     atomicMax(pairs.classifyGroupCountY, divideRoundingUp(groups, kPairRowGroups));
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Phase 4, first step. Source: the paper, section 2.4.
+// Phase 4, which pairs go to which queue. Source: the paper, section 2.4.
 
 #include "vulkan/pass.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Phase 4, last step. Source: the paper, section 2.4.
+// Phase 4, for one queue of pairs. Source: the paper, section 2.4.
 
 #include "vulkan/pass.h"
 

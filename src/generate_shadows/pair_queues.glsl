@@ -25,6 +25,9 @@ uint segmentOf(uint queue) {
     return first;
 }
 
+// Whether the queue's pairs are searched quad by quad before they are filtered.
+bool isSearched(uint queue) { return queue / kShadowViewsKinds == kFilterPcssShared; }
+
 // A work group's number in a dispatch over pairs.
 uint pairGroup() { return gl_WorkGroupID.y * kPairRowGroups + gl_WorkGroupID.x; }
 

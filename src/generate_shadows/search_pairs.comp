@@ -1,11 +1,11 @@
 #version 460
-// Phase 4, second step, for the filter "pcss_shared": one blocker search for every 2x2 pixels of a pair's tile.
+// Phase 4, for the filter "pcss_shared": one blocker search for every 2x2 pixels of a pair's tile.
 //
 // Problem: most pairs are dark or lit all over their tile, and a lane per pixel finds that out 64 times.
-// Here: a lane per quad, 16 for a pair, four pairs to a work group. Each lane searches for its quad
-// (visibility/pcss_quad.glsl). Pairs whose quads agree end here. The others take a visibility slot, leave in it what
-// their quads have found, 16 bits each, and go on to filter_pairs.
-// A pair without a slot is evaluated while lighting.
+// Here: a lane per quad, 16 for a pair, four pairs at a time. Each lane searches for its quad (visibility/pcss_quad.glsl).
+// Pairs whose quads agree end here. The others take a visibility slot, leave in it what their quads have found, 16 bits
+// each, and go on to filter_pairs. A pair without a slot is evaluated while lighting.
+// A work group takes kSearchRounds times four pairs, so that it needs one atomic for slots and one for the queue.
 #extension GL_GOOGLE_include_directive : require
 #define GNOMON_LISTS_ACCESS
 #include "vulkan/work_group.glsl"
@@ -15,68 +15,85 @@
 
 const uint kNotLit = 1u;   // some pixel is not wholly lit
 const uint kNotDark = 2u;  // some pixel is not wholly dark
+const uint kMixed = kNotLit | kNotDark;
+const uint kPairs = kPairsPerSearchGroup;
+const uint kCodeWords = kQuadsPerTile / 2u;
 
-shared uint votes[kPairsPerSearchGroup];
-shared uint slots[kPairsPerSearchGroup];
-shared uint codes[kWorkGroupSize];
+shared uint votes[kPairs];
+shared uint slots[kPairs];
+shared uint codes[kPairs * kQuadsPerTile];
+shared uint mixedCount;
+shared uint firstSlot;
+shared uint firstQueued;
 
 uint voteOf(GpuLight light, QuadSearch quad) {
     if (quad.reached == 0u) return 0u;
     // A faded shadow lets some light through, more or less of it.
-    if ((light.typeAndFlags & kLightShadowFadesBit) != 0u) return kNotLit | kNotDark;
+    if ((light.typeAndFlags & kLightShadowFadesBit) != 0u) return kMixed;
     uint vote = quad.asking < quad.reached ? kNotLit : 0u;
     if (quad.asking == 0u || quad.code == kQuadDark) return vote | kNotLit;
-    return vote | (quad.code == kQuadLit ? kNotDark : kNotLit | kNotDark);
+    return vote | (quad.code == kQuadLit ? kNotDark : kMixed);
 }
 
-// The pair's slot for its quads, or kSlotEvaluate. `queue` is the one that it goes on to.
-uint takeSlot(uint queue, uint segment, Pair pair) {
-    uint slot = atomicAdd(counters.visibilitySlots, 1u);
-    if (slot >= frame.slotCapacity) {
-        evaluateEntry(pair.place, pair.lightIndex, pair.tile);
-        return kSlotEvaluate;
-    }
-    uint at = atomicAdd(pairs.queues[queue].filterCount, 1u);
-    atomicMax(pairs.queues[queue].filterGroupCountY, at / kPairRowGroups + 1u);
-    queuedPairs[frame.listCapacity + segment + at] = pair.place;
-    finalList[pair.place] = packFinalEntry(pair.lightIndex, slot);
-    return slot;
+// Room for the group's mixed pairs. Called by one lane.
+void makeRoom(uint queue) {
+    if (mixedCount == 0u) return;
+    firstSlot = atomicAdd(counters.visibilitySlots, mixedCount);
+    uint withSlot = firstSlot < frame.slotCapacity ? min(mixedCount, frame.slotCapacity - firstSlot) : 0u;
+    if (withSlot == 0u) return;
+    uint first = atomicAdd(pairs.queues[queue].filterCount, withSlot);
+    atomicMax(pairs.queues[queue].filterGroupCountY, (first + withSlot - 1u) / kPairRowGroups + 1u);
+    firstQueued = frame.listCapacity + segmentOf(queue) + first;
 }
 
 void main() {
     uint lane = laneIndex();
-    uint local = lane / kQuadsPerTile;
     uint queue = pairQueueOf(findLSB(kFilters), kShadowViews);
     uint segment = segmentOf(queue);
-    uint i = pairGroup() * kPairsPerSearchGroup + local;
-    bool valid = i < pairs.queues[queue].searchCount && segment + i < frame.listCapacity;
-    if (lane < kPairsPerSearchGroup) votes[lane] = 0u;
+    uint first = pairGroup() * kPairs;
+    uint count = min(pairs.queues[queue].searchCount, max(frame.listCapacity, segment) - segment);
+    if (first >= count) return;
+    if (lane < kPairs) votes[lane] = 0u;
+    if (lane == 0u) mixedCount = 0u;
     barrier();
-    Pair pair;
-    uint code = kQuadDark;
-    if (valid) {
-        pair = pairAt(queuedPairs[segment + i]);
+    for (uint round = 0u; round < kSearchRounds; ++round) {
+        uint local = round * (kWorkGroupSize / kQuadsPerTile) + lane / kQuadsPerTile;
+        if (first + local >= count) continue;
+        Pair pair = pairAt(queuedPairs[segment + first + local]);
         GpuLight light = lights[pair.lightIndex];
-        uvec2 first = pair.tile * kShadowTileSizePx + 2u * laneCoordinates(lane % kQuadsPerTile);
-        QuadSearch quad = searchQuad(light, first);
-        code = quad.code;
+        QuadSearch quad = searchQuad(light, pair.tile * kShadowTileSizePx + 2u * laneCoordinates(lane % kQuadsPerTile));
+        codes[local * kQuadsPerTile + lane % kQuadsPerTile] = quad.code;
         atomicOr(votes[local], voteOf(light, quad));
     }
-    codes[lane] = code;
     barrier();
-    if (lane % kQuadsPerTile == 0u) {
-        slots[local] = kSlotEvaluate;
-        if (valid && votes[local] == (kNotLit | kNotDark)) {
-            slots[local] = takeSlot(queue, segment, pair);
-        } else if (valid) {
-            uint flag = votes[local] == kNotDark ? kSlotAllLit : kSlotAllUnlit;
-            finalList[pair.place] = packFinalEntry(pair.lightIndex, flag);
+    uint rank = 0u;
+    if (lane < kPairs && votes[lane] == kMixed) rank = atomicAdd(mixedCount, 1u);
+    barrier();
+    if (lane == 0u) makeRoom(queue);
+    barrier();
+    if (lane < kPairs) {
+        slots[lane] = kSlotEvaluate;
+        if (first + lane < count) {
+            Pair pair = pairAt(queuedPairs[segment + first + lane]);
+            uint entry = votes[lane] == kNotDark ? kSlotAllLit : kSlotAllUnlit;
+            if (votes[lane] == kMixed) {
+                entry = firstSlot + rank;
+                if (entry < frame.slotCapacity) {
+                    slots[lane] = entry;
+                    queuedPairs[firstQueued + rank] = pair.place;
+                } else {
+                    evaluateEntry(pair.place, pair.lightIndex, pair.tile);
+                }
+            }
+            if (votes[lane] != kMixed || entry < frame.slotCapacity) {
+                finalList[pair.place] = packFinalEntry(pair.lightIndex, entry);
+            }
         }
     }
     barrier();
-    uint word = lane % kQuadsPerTile;
-    if (word < kQuadsPerTile / 2u && slots[local] != kSlotEvaluate) {
-        uint at = local * kQuadsPerTile + 2u * word;
-        visibilityWords[slots[local] * kVisibilitySlotWords + word] = codes[at] | codes[at + 1u] << 16u;
+    for (uint i = lane; i < kPairs * kCodeWords; i += kWorkGroupSize) {
+        uint slot = slots[i / kCodeWords];
+        if (slot == kSlotEvaluate) continue;
+        visibilityWords[slot * kVisibilitySlotWords + i % kCodeWords] = codes[2u * i] | codes[2u * i + 1u] << 16u;
     }
 }

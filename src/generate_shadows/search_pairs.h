@@ -1,5 +1,5 @@
 #pragma once
-// Phase 4, second step, for Filter::PcssShared. Source: the paper, section 2.4.
+// Phase 4, the search of Filter::PcssShared. Source: the paper, section 2.4.
 
 #include "vulkan/pass.h"
 

@@ -110,6 +110,8 @@ GNOMON_CONSTANT GNOMON_UINT kFilterPcssShared = 4u;  // one search for 2x2 pixel
 GNOMON_CONSTANT GNOMON_UINT kFilterCount = 5u;
 GNOMON_CONSTANT GNOMON_UINT kLightFilterShift = 4u;
 GNOMON_CONSTANT GNOMON_UINT kLightFilterMask = 7u;
+// Filters that are evaluated tile by tile: so cheap that a queue costs more than it saves. A set.
+GNOMON_CONSTANT GNOMON_UINT kFiltersByTile = 1u << kFilterHard | 1u << kFilterPcf;
 // Which of the frame's taps the light's soft shadows take.
 GNOMON_CONSTANT GNOMON_UINT kMaxPcssPresets = 4u;
 GNOMON_CONSTANT GNOMON_UINT kLightPcssPresetShift = 7u;
@@ -126,9 +128,13 @@ GNOMON_CONSTANT GNOMON_UINT kShadowViewsKinds = 3u;     // without "any"
 GNOMON_CONSTANT GNOMON_UINT kPairQueueCount = kFilterCount * kShadowViewsKinds;
 // Work groups over pairs form rows of this many in indirect dispatches.
 GNOMON_CONSTANT GNOMON_UINT kPairRowGroups = 1024u;
-// Pairs that one work group of search_pairs takes, 16 quads of 2x2 pixels each.
+// Places of list space that one work group of classify_pairs takes.
+GNOMON_CONSTANT GNOMON_UINT kPlacesPerClassifyGroup = 512u;
+// Pairs that one work group of search_pairs takes, 16 quads of 2x2 pixels each. Several rounds of them, so that the
+// group's atomics are few.
 GNOMON_CONSTANT GNOMON_UINT kQuadsPerTile = kWorkGroupSize / 4u;
-GNOMON_CONSTANT GNOMON_UINT kPairsPerSearchGroup = kWorkGroupSize / kQuadsPerTile;
+GNOMON_CONSTANT GNOMON_UINT kSearchRounds = 4u;
+GNOMON_CONSTANT GNOMON_UINT kPairsPerSearchGroup = kSearchRounds * (kWorkGroupSize / kQuadsPerTile);
 // What a search tells of a quad, 16 bits. Else the filter's radius in parts of a texel.
 GNOMON_CONSTANT GNOMON_UINT kQuadDark = 0u;
 GNOMON_CONSTANT GNOMON_UINT kQuadLit = 0xFFFFu;

@@ -101,12 +101,19 @@ struct GpuShadowBoundsCell {
     float atlasPerTexelY;
 };
 
-// Taps of soft shadows, and one over their numbers.
+// Taps of soft shadows, one over the square of the number of search taps, and one over that of filter taps.
 struct GpuPcssTaps {
     uint searchTaps;
     uint filterTaps;
-    float perSearchTap;
+    float perSearchTapSquared;
     float perFilterTap;
+};
+
+// Where taps of soft shadows lie, in the pattern's axes: tap i is at the golden angle i times. Read with an index that
+// is the same for all lanes.
+struct GpuPcssTap {
+    vec2 filtered;   // times the radius over the square root of their number; evenly spread
+    vec2 searched;   // times the radius over the square of their number; crowded in the middle
 };
 
 // Constants of one frame and view.
@@ -146,6 +153,7 @@ struct GpuFrame {
     uint reserved1;
     uint reserved2;
     GpuPcssTaps pcssTaps[kMaxPcssPresets];
+    GpuPcssTap pcssPattern[kMaxPcssTaps];
 };
 
 // What the passes count, written with atomics, cleared at the start of every frame.
@@ -230,7 +238,7 @@ static_assert(offsetof(Specialization, shadowViews) == 4 * kSpecShadowViews);
 static_assert(sizeof(GpuLight) == 96);
 static_assert(sizeof(GpuShadowView) == 208);
 static_assert(sizeof(GpuShadowBoundsCell) == 32);
-static_assert(sizeof(GpuFrame) == 16 * 16);
+static_assert(sizeof(GpuFrame) == 16 * (16 + kMaxPcssTaps));
 static_assert(sizeof(GpuCounters) == 52);
 static_assert(sizeof(GpuPairQueue) == 48);
 static_assert(sizeof(GpuPairHead) == 16 + 48 * kPairQueueCount);

@@ -16,4 +16,14 @@ bool hasFilter(GpuLight light, uint filterOfLight) {
     return kFilters == bit || filterOf(light) == filterOfLight;
 }
 
+// Whether the frame has filters that are evaluated tile by tile, or nothing to evaluate at all. Then lights without
+// shadows are left to the tiles, too.
+bool hasTileFilters() { return kFilters == 0u || (kFilters & kFiltersByTile) != 0u; }
+
+bool isForTiles(GpuLight light) {
+    if (!hasTileFilters()) return false;
+    bool casts = (light.typeAndFlags & kLightCastsBit) != 0u;
+    return kFilters == 0u || !casts || (kFiltersByTile >> filterOf(light) & 1u) != 0u;
+}
+
 #endif

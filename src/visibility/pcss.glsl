@@ -24,7 +24,7 @@
 #include "visibility/pcss_search.glsl"
 
 float filterTap(ShadowPoint s, vec2 corner) {
-    precise vec2 first = floor(corner);
+    vec2 first = floorOfTap(corner);
     precise vec2 f = corner - first;
     vec4 lit = vec4(lessThanEqual(gatherShadowTexels(s, first), planeDepthsAt(s, first)));
     precise float top = fma(f.x, lit.z - lit.w, lit.w);
@@ -33,22 +33,24 @@ float filterTap(ShadowPoint s, vec2 corner) {
     return value;
 }
 
+// `perTap`: one over the number of taps. There are two loops, so that nothing stands between the texture reads where
+// all taps stay inside the rectangle.
 float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius, uint taps, float perTap) {
     precise float sum = 0.0;
-    bool inside = !mayLeave(s, k, radius);
-    vec2 direction = vec2(1.0, 0.0);
-    for (uint i = 0u; i < taps; ++i) {
-        precise float share = sqrt((float(i) + 0.5) * perTap);
-        precise float away = share * radius;
-        vec2 offset = tapOffset(k, direction);
-        direction = nextDirection(direction);
-        precise vec2 corner = fma(offset, vec2(away), s.corner);
-        if (!inside && leavesFace(s, k, corner)) {
-            float plane, stored;
-            otherFace(light, s, i, corner + 0.5, plane, stored);
-            sum += stored > plane ? 0.0 : 1.0;
-        } else {
-            sum += filterTap(s, clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));
+    precise float scale = radius * sqrt(perTap);
+    TapAxes axes = tapAxes(k, scale);
+    if (!mayLeave(s, k, radius)) {
+        for (uint i = 0u; i < taps; ++i) sum += filterTap(s, tapCorner(s, axes, frame.pcssPattern[i].filtered));
+    } else {
+        for (uint i = 0u; i < taps; ++i) {
+            vec2 corner = tapCorner(s, axes, frame.pcssPattern[i].filtered);
+            if (leavesFace(s, k, corner)) {
+                float plane, stored;
+                otherFace(light, s, i, corner + 0.5, plane, stored);
+                sum += stored > plane ? 0.0 : 1.0;
+            } else {
+                sum += filterTap(s, clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));
+            }
         }
     }
     precise float visibility = sum * perTap;

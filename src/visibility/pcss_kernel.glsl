@@ -71,21 +71,32 @@ PcssKernel pcssKernelOf(GpuLight light, ShadowPoint s, uvec2 pixel) {
     return k;
 }
 
-// Directions of the taps, in the pattern's axes: multiples of the golden angle, pi (3 - sqrt 5), from (1, 0) on. One
-// turned into the next, not a table: Mesa's lavapipe takes half a minute to compile a loop that reads one.
-// Source: Vogel 1979, "A better way to construct the sunflower head".
-vec2 nextDirection(vec2 d) {
-    const float cosine = -0.7373688780783197;
-    const float sine = 0.6754902942615238;
-    precise vec2 turned = vec2(fma(cosine, d.x, -sine * d.y), fma(sine, d.x, cosine * d.y));
-    return turned;
+// The kernel's axes, in texels, times what scales the pattern of a tap.
+struct TapAxes {
+    vec2 right;
+    vec2 down;
+};
+
+TapAxes tapAxes(PcssKernel k, float scale) {
+    precise vec2 right = k.right * scale;
+    precise vec2 down = k.down * scale;
+    return TapAxes(right, down);
 }
 
-// A tap at radius 1, in texels from the receiver.
-vec2 tapOffset(PcssKernel k, vec2 direction) {
-    precise vec2 offset = vec2(fma(k.right.x, direction.x, k.down.x * direction.y),
-                               fma(k.right.y, direction.x, k.down.y * direction.y));
-    return offset;
+// Where a tap's footprint of 2x2 texels begins, in the atlas. `pattern`: frame.pcssPattern.
+vec2 tapCorner(ShadowPoint s, TapAxes axes, vec2 pattern) {
+    precise vec2 corner = fma(axes.down, vec2(pattern.y), fma(axes.right, vec2(pattern.x), s.corner));
+    return corner;
+}
+
+// The greatest whole number that is not above a place in an atlas. Of whole numbers themselves it may be the one
+// below: then the footprint is another, but a bilinear weight of 1 takes the same texel. Two additions where floor()
+// takes a slow unit of the GPU.
+vec2 floorOfTap(vec2 corner) {
+    const float kWhole = 12582912.0;  // 1.5 * 2^23: floats there have no fraction
+    precise vec2 shifted = (corner - 0.5) + kWhole;
+    precise vec2 whole = shifted - kWhole;
+    return whole;
 }
 
 // Half the sides of a box that holds the texels of all taps within a radius.

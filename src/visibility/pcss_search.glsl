@@ -22,8 +22,10 @@ struct Blockers {
 
 // `farthest`: what is stored farther from the light than this is out of the source's sight at the tap's radius.
 void countBlockers(vec4 plane, vec4 stored, float farthest, inout Blockers found) {
-    found.allOcclude = found.allOcclude && all(greaterThan(stored, plane));
-    precise vec4 blocks = vec4(greaterThan(stored, max(plane, vec4(farthest))));
+    bvec4 occludes = greaterThan(stored, plane);
+    bvec4 seen = greaterThan(stored, vec4(farthest));
+    found.allOcclude = found.allOcclude && all(occludes);
+    precise vec4 blocks = vec4(occludes.x && seen.x, occludes.y && seen.y, occludes.z && seen.z, occludes.w && seen.w);
     precise float blocking = found.blocking + ((blocks.x + blocks.y) + (blocks.z + blocks.w));
     precise float depths = fma(blocks.x, stored.x, found.depths);
     depths = fma(blocks.y, stored.y, depths);
@@ -47,7 +49,7 @@ bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, float spread, out f
     needed = reach;
     visibility = 1.0;
     for (uint i = 0u; i < 2u; ++i) {
-        vec2 extent = tapExtent(k, needed);
+        vec2 extent = tapExtent(k, max(needed, k.texel));  // no filter is narrower than a texel
         bool known;
         vec2 bounds = shadowBoundsOver(s.view, s.corner + 0.5 - extent, s.corner + 0.5 + extent, known);
         if (!known) return false;
@@ -57,7 +59,7 @@ bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, float spread, out f
         float slack = 1e-6 * abs(s.depth) + 1e-5 * rise;  // the taps' own rounding
         if (nearest <= max(s.depth - rise - slack, s.least)) return true;
         visibility = 0.0;
-        if (i == 0u && farthest > max(s.depth + rise + slack, s.least)) return true;
+        if (farthest > max(s.depth + rise + slack, s.least)) return true;
         visibility = 1.0;
         // The region of the source grows toward the light.
         float seen = fma(k.radius1, nearest, k.radius0) + kTapTexels * k.texel + spread;
@@ -68,9 +70,9 @@ bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, float spread, out f
     return false;
 }
 
-float searchRadius(uint preset, uint tap, float reach) {
-    precise float share = (float(tap) + 0.5) * frame.pcssTaps[preset].perSearchTap;
-    precise float radius = share * share * reach;
+float searchRadius(uint tap, float scale) {
+    precise float place = float(tap) + 0.5;
+    precise float radius = place * place * scale;
     return radius;
 }
 
@@ -85,25 +87,23 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, float spread, 
     precise float inverse = k.radius1 > 0.0 ? 1.0 / k.radius1 : 0.0;
     precise float farthest0 = k.radius1 > 0.0 ? -(k.radius0 + kTapTexels * k.texel) * inverse : -2.0;
     Blockers found = Blockers(0.0, 0.0, true);
-    vec2 direction = vec2(1.0, 0.0);
+    uint taps = frame.pcssTaps[preset].searchTaps;
+    precise float scale = reach * frame.pcssTaps[preset].perSearchTapSquared;
+    TapAxes axes = tapAxes(k, scale);
     if (!mayLeave(s, k, reach)) {
         float needed;
         if (knownByBounds(s, k, reach, spread, needed, visibility)) return -1.0;
-        for (uint i = 0u; i < frame.pcssTaps[preset].searchTaps; ++i) {
-            float radius = searchRadius(preset, i, reach);
+        for (uint i = 0u; i < taps; ++i) {
+            float radius = searchRadius(i, scale);
             if (radius > needed && !found.allOcclude) break;  // beyond, there is no blocker
-            vec2 offset = tapOffset(k, direction);
-            direction = nextDirection(direction);
-            precise vec2 first = floor(fma(offset, vec2(radius), s.corner));
+            vec2 first = floorOfTap(tapCorner(s, axes, frame.pcssPattern[i].searched));
             vec4 stored = gatherShadowTexels(s, first);
             countBlockers(planeDepthsAt(s, first), stored, fma(max(radius - spread, 0.0), inverse, farthest0), found);
         }
     } else {
-        for (uint i = 0u; i < frame.pcssTaps[preset].searchTaps; ++i) {
-            float radius = searchRadius(preset, i, reach);
-            vec2 offset = tapOffset(k, direction);
-            direction = nextDirection(direction);
-            precise vec2 corner = fma(offset, vec2(radius), s.corner);
+        for (uint i = 0u; i < taps; ++i) {
+            float radius = searchRadius(i, scale);
+            vec2 corner = tapCorner(s, axes, frame.pcssPattern[i].searched);
             vec4 plane, stored;
             if (leavesFace(s, k, corner)) {
                 float planeThere, storedThere;
@@ -111,7 +111,7 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, float spread, 
                 plane = vec4(planeThere);
                 stored = vec4(storedThere);
             } else {
-                precise vec2 first = floor(clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));
+                vec2 first = floorOfTap(clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));
                 plane = planeDepthsAt(s, first);
                 stored = gatherShadowTexels(s, first);
             }

@@ -42,8 +42,16 @@ uint classify(uint place) {
     return kPairQueueCount;
 }
 
+uint segmentOf(uint queue) {
+    uint first = 0u;
+    for (uint i = 0u; i < queue; ++i) first += pairs.queues[i].listed;
+    return first;
+}
+
 // Makes room for the group's pairs of one queue. Called by one lane.
 void makeRoom(uint queue) {
+    uint segment = segmentOf(queue);
+    if (pairGroup() == 0u) pairs.queues[queue].first = segment;  // for the later passes
     uint count = counts[queue];
     if (count == 0u) return;
     uint first = 0u;
@@ -57,7 +65,7 @@ void makeRoom(uint queue) {
         atomicMax(pairs.queues[queue].filterGroupCountY, divideRoundingUp(first + count, kPairRowGroups));
         begin = frame.listCapacity;
     }
-    firsts[queue] = begin + segmentOf(queue) + first;
+    firsts[queue] = begin + segment + first;
 }
 
 void main() {

@@ -17,13 +17,12 @@
 #include "generate_shadows/pair_queues.glsl"
 #include "visibility/visibility.glsl"
 
-const uint kNotLit = 1u;
-const uint kNotDark = 2u;
 const uint kPixelsPerWord = 32u / kVisibilityBits;
 
 shared uint stored[kWorkGroupSize];  // by lane, which is the pixel's place in the tile
 shared uint subgroupVotes[kSubgroupCount];
 shared uint pairSlot;
+shared uint filteredQuads;  // a set
 
 uint wordOf(uint word) {
     uint packed = 0u;
@@ -71,32 +70,26 @@ uint codeOf(uint slot, uint quad) {
     return visibilityWords[slot * kVisibilitySlotWords + quad / 2u] >> (16u * (quad & 1u)) & 0xFFFFu;
 }
 
-// The lane's quad: the lane / 4-th of those that need a filter. kQuadsPerTile: none is left.
-uint quadOfLane(uint slot, uint lane, bool all, out uint code) {
-    uint left = lane / 4u;
-    code = kQuadDark;
-    uint found = kQuadsPerTile;
-    for (uint i = 0u; i < kQuadsPerTile; ++i) {
-        uint c = codeOf(slot, i);
-        if (!all && (c == kQuadDark || c == kQuadLit)) continue;
-        if (left == 0u && found == kQuadsPerTile) {
-            found = i;
-            code = c;
-        } else if (left != 0u) {
-            --left;
-        }
-    }
-    return found;
+// The lane's quad: the lane / 4-th of those in the set. kQuadsPerTile: none is left.
+uint quadOfLane(uint quads, uint lane) {
+    if (lane / 4u >= bitCount(quads)) return kQuadsPerTile;
+    for (uint i = lane / 4u; i > 0u; --i) quads &= quads - 1u;
+    return findLSB(quads);
 }
 
 void filterQuads(Pair pair, GpuLight light, uint lane) {
     uint slot = finalSlotOrFlag(finalList[pair.place]);
     bool fades = (light.typeAndFlags & kLightShadowFadesBit) != 0u;
-    stored[lane] = codeOf(slot, lane / 4u) == kQuadLit ? kVisibilityLevels : 0u;
-    uint code;
-    uint quad = quadOfLane(slot, lane, fades, code);
+    uint ownCode = codeOf(slot, lane / 4u);
+    stored[lane] = ownCode == kQuadLit ? kVisibilityLevels : 0u;
+    if (lane == 0u) filteredQuads = 0u;
     barrier();
+    bool known = ownCode == kQuadDark || ownCode == kQuadLit;
+    if (lane % 4u == 0u && (fades || !known)) atomicOr(filteredQuads, 1u << lane / 4u);
+    barrier();
+    uint quad = quadOfLane(filteredQuads, lane);
     if (quad < kQuadsPerTile) {
+        uint code = codeOf(slot, quad);
         uint place = 4u * quad + lane % 4u;
         Receiver receiver = receiverAt(pair.tile * kShadowTileSizePx + laneCoordinates(place));
         vec3 toLight;
@@ -107,13 +100,23 @@ void filterQuads(Pair pair, GpuLight light, uint lane) {
         stored[place] = level;
     }
     barrier();
-    if (lane < kVisibilitySlotWords) visibilityWords[slot * kVisibilitySlotWords + lane] = wordOf(lane);
+    // The search may have taken for mixed what is not. The slot is spent, but lighting need not read it.
+    uint level = stored[lane];
+    uint votes = combineVotes((level != kVisibilityLevels ? kNotLit : kNoVote) | (level != 0u ? kNotDark : kNoVote));
+    if (votes != (kNotLit | kNotDark)) {
+        if (lane == 0u) {
+            uint flag = votes == kNotDark ? kSlotAllLit : kSlotAllUnlit;
+            finalList[pair.place] = packFinalEntry(pair.lightIndex, flag);
+        }
+    } else if (lane < kVisibilitySlotWords) {
+        visibilityWords[slot * kVisibilitySlotWords + lane] = wordOf(lane);
+    }
 }
 
 void main() {
     uint queue = pairQueueOf(findLSB(kFilters), kShadowViews);
     uint i = pairGroup();
-    uint at = segmentOf(queue) + i;
+    uint at = pairs.queues[queue].first + i;
     if (i >= pairs.queues[queue].filterCount || at >= frame.listCapacity) return;
     Pair pair = pairAt(queuedPairs[frame.listCapacity + at]);
     GpuLight light = lights[pair.lightIndex];

@@ -18,13 +18,6 @@ Pair pairAt(uint place) {
     return Pair(place, unpackEarlyIndex(earlyList[word], place), uvec2(tile & 0xFFFFu, tile >> 16u));
 }
 
-// Where the queue's segment begins in each half of queuedPairs.
-uint segmentOf(uint queue) {
-    uint first = 0u;
-    for (uint i = 0u; i < queue; ++i) first += pairs.queues[i].listed;
-    return first;
-}
-
 // Whether the queue's pairs are searched quad by quad before they are filtered.
 bool isSearched(uint queue) { return queue / kShadowViewsKinds == kFilterPcssShared; }
 

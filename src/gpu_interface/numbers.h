@@ -138,7 +138,9 @@ GNOMON_CONSTANT GNOMON_UINT kPairsPerSearchGroup = kSearchRounds * (kWorkGroupSi
 // What a search tells of a quad, 16 bits. Else the filter's radius in parts of a texel.
 GNOMON_CONSTANT GNOMON_UINT kQuadDark = 0u;
 GNOMON_CONSTANT GNOMON_UINT kQuadLit = 0xFFFFu;
-GNOMON_CONSTANT GNOMON_UINT kQuadOwn = 0xFFFEu;  // each pixel searches by itself
+GNOMON_CONSTANT GNOMON_UINT kQuadOwn = 0xFFFEu;         // each pixel searches by itself
+GNOMON_CONSTANT GNOMON_UINT kQuadLitIfAsked = 0xFFFDu;  // lit, but for pixels that do not ask the shadowmap
+GNOMON_CONSTANT GNOMON_UINT kQuadMostRadius = 0xFFFCu;
 GNOMON_CONSTANT GNOMON_UINT kQuadRadiusParts = 1024u;
 
 // --- Depth bias ------------------------------------------------------------------------------------------------------

@@ -183,10 +183,10 @@ struct GpuPairQueue {
     uint filterGroupCountY;
     uint filterGroupCountZ;
     uint filterCount;  // pairs whose pixels are to be filtered
-    uint listed;       // pairs of all early lists: how long a segment of queuedPairs the queue has
+    uint listed;       // pairs of all early lists: how long a segment the queue has in each half of queuedPairs,
+    uint first;        // and where it begins
     uint reserved0;
     uint reserved1;
-    uint reserved2;
 };
 
 struct GpuPairHead {

@@ -68,7 +68,7 @@ float visibilityWithQuad(GpuLight light, Receiver receiver, vec3 toLight, uint q
         if (hasFilter(light, kFilterHost)) visibility = hostVisibility(light, receiver, toLight);
         else
 #endif
-        visibility = quad == kQuadDark ? 0.0 : quad == kQuadLit ? 1.0 : builtInVisibility(light, receiver, quad);
+        visibility = quad == kQuadDark ? 0.0 : quad == kQuadLit || quad == kQuadLitIfAsked ? 1.0 : builtInVisibility(light, receiver, quad);
     }
     precise float faded = 1.0 - shadowFadeOf(light, receiver) * (1.0 - visibility);
     return faded;

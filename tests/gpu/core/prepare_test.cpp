@@ -99,7 +99,7 @@ TEST_F(PrepareTest, BadSettingsAreRefused) {
             EXPECT_STREQ(begun.message(), checked.message());
         }
         const ShadowSettings host = {.filters = only(Filter::Host)};
-        EXPECT_THAT(shared.prepare(host).message(), ::testing::HasSubstr("generateShadowsSpirv"));
+        EXPECT_THAT(shared.prepare(host).message(), ::testing::HasSubstr("filterPairsSpirv"));
         EXPECT_EQ(shared.pipelineCount(), before);
         Frames frames(device, scene, 2);
         const std::uint64_t number = frames.run(*view, {});

@@ -49,11 +49,11 @@ void checkFilter(TestDevice& device, FrameInput input, const FilterCase& filter)
     EXPECT_GT(s.allLit, 20u);
     if (filter.filter) {
         EXPECT_GT(s.slots, 20u);
-        EXPECT_GT(s.absent, 3u);
+        EXPECT_GT(s.allUnlit, 3u);
         EXPECT_GT(s.exactBytes, s.bytes / 2);
     }
-    std::printf("    filter %d: pairs %zu ambiguous %.4f loose %.4f slots %zu lit %zu absent %zu\n", number, s.pairs,
-                s.ambiguousShare(), s.looseShare(), s.slots, s.allLit, s.absent);
+    std::printf("    filter %d: pairs %zu ambiguous %.4f loose %.4f slots %zu lit %zu dark %zu\n", number, s.pairs,
+                s.ambiguousShare(), s.looseShare(), s.slots, s.allLit, s.allUnlit);
 }
 
 TEST_P(ShadowsTest, EveryFilter) {

@@ -51,6 +51,8 @@ TEST_F(TimelineTest, HoldsRowsOfHostAndLibraryInOrder) {
         const std::unique_ptr<Timeline> timeline = makeTimeline(context, {});
         Shot shot = {.timeline = timeline.get(), .hostRows = true};
         shot.settings.shadowBounds = true;
+        shot.settings.lightLists = LightLists::Pixel;
+        shot.settings.filters = only(Filter::PcssShared);
         const std::unique_ptr<View> view = makeView(context, smallView());
         Frames frames(device, scene, 2);
         for (int i = 0; i < 3; ++i) {
@@ -60,11 +62,14 @@ TEST_F(TimelineTest, HoldsRowsOfHostAndLibraryInOrder) {
             expectInOrder(rows);
             ASSERT_THAT(namesOf(rows), ElementsAre("gbuffer", "hierarchical_depth", "find_lights_approximate",
                                                    "find_lights_accurate", "shadowmaps", "shadow_bounds",
-                                                   "generate_shadows", "lighting", "gather_statistics"));
+                                                   "classify_pairs", "search_pairs", "filter_pairs", "lighting",
+                                                   "gather_statistics"));
             const Phase phases[] = {
-                Phase::Host,      Phase::HierarchicalDepth, Phase::FindLightsApproximate, Phase::FindLightsAccurate,
-                Phase::Host,      Phase::ShadowBounds,      Phase::GenerateShadows,       Phase::Lighting,
-                Phase::Statistics};
+                Phase::Host,            Phase::HierarchicalDepth, Phase::FindLightsApproximate,
+                Phase::FindLightsAccurate, Phase::Host,           Phase::ShadowBounds,
+                Phase::GenerateShadows, Phase::GenerateShadows,   Phase::GenerateShadows,
+                Phase::Lighting,        Phase::Statistics};
+            ASSERT_EQ(rows.size(), std::size(phases));
             for (std::size_t r = 0; r < rows.size(); ++r) EXPECT_EQ(rows[r].phase, phases[r]) << rows[r].name;
             EXPECT_EQ(rows[0].kind, RowKind::Drawing);
             EXPECT_EQ(rows[1].kind, RowKind::Compute);

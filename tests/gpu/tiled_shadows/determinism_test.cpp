@@ -109,7 +109,7 @@ TEST_P(DeterminismTest, StatisticsByFrameNumber) {
             EXPECT_GE(statistics.prepareMilliseconds, 0.0);
             const std::span<const TimelineRow> rows = rig.timeline().rows(before + 1 + i);
             for (const TimelineRow& row : rows) EXPECT_GE(row.milliseconds(), 0.0) << row.name;
-            EXPECT_EQ(rows.size(), rig.timeline().records() ? 5u : 0u);
+            EXPECT_EQ(rows.size(), rig.timeline().records() ? 4u : 0u);
         }
         EXPECT_FALSE(rig.view().statistics(before, statistics));
         EXPECT_FALSE(rig.view().statistics(before + 1 + inFlight, statistics));

@@ -340,7 +340,7 @@ TEST_F(FinalLists, PlantedErrorsAreFound) {
 }
 
 TEST_F(FinalLists, SlotsOfFourBits) {
-    for (const Filter filter : {Filter::Pcf, Filter::Pcss}) {
+    for (const Filter filter : {Filter::Pcf, Filter::Pcss, Filter::PcssShared}) {
         useFilter(frame.lights, filter);
         frame.shadows.visibilityBits = 4;
         HonestBuffers half = makeHonestBuffers(frame, expected);

@@ -42,8 +42,8 @@ struct EarlyListReport {
     std::size_t tilesWithoutSpace = 0;
     [[nodiscard]] double mayShare() const { return must + may ? double(may) / double(must + may) : 0.0; }
 };
-/// must is in the list; the number of casting lights in the count word is right. Of phase 3's lists: the list is in must
-/// or may. Of phase 2's lists: they are as long as the approximate count.
+/// must is in the list; the number of casting lights in the count word is right. Of phase 3's lists: the list is in
+/// must or may. Of phase 2's lists: they are as long as the approximate count.
 EarlyListReport checkEarlyLists(const std::vector<TileLights>& expected, const std::vector<LightModel>& lights,
                                 const ListBuffers& buffers);
 

@@ -5,8 +5,8 @@
 //
 // What: phase 2 may keep too many lights, never too few. A light that surely reaches a pixel of a tile (phase 3's own
 // tests, find_lights_accurate.h) must be in the light mask of the tile's group and in the tile's count, and no early
-// count may exceed the approximate one. Where phase 2 writes the early lists (kListsByFroxel), a group's mask is exactly
-// the union of its tiles' lists.
+// count may exceed the approximate one. Where phase 2 writes the early lists (kListsByFroxel), a group's mask is
+// exactly the union of its tiles' lists.
 //
 // Limits: the froxel tests themselves are not written again. How tight they are is reported: counted entries against
 // those that the exact tests would allow.

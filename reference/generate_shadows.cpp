@@ -27,13 +27,9 @@ struct Sampler {
 
 Visibility Sampler::soft(std::size_t which, const ReceiverPlane& plane) const {
     // Perspective: metres; orthographic: a tangent. Both came through one rounding to float.
-    const PcssInput pcss = {views(),
-                            input.atlases,
-                            which,
-                            rounded(light.sourceRadius, 1),
-                            input.pcssPresets[light.pcssPreset],
-                            directions,
-                            quad != nullptr};
+    const PcssInput pcss = {
+        views(),    input.atlases,  which, rounded(light.sourceRadius, 1), input.pcssPresets[light.pcssPreset],
+        directions, quad != nullptr};
     if (quad == nullptr) return pcssAt(pcss, plane);
     Visibility result = quad->mayBeOwn ? pcssAt(pcss, plane) : kNone;
     for (const Interval radiusPx : quad->radiiPx) result = merge(result, pcssFilterAt(pcss, plane, radiusPx));

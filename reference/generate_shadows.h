@@ -67,8 +67,8 @@ struct StoredVisibility {
 
 struct QuadFinding;  // pcss_quad.h
 
-/// Steps 1 to 4. The pixel must not be background. `quad`: for Filter::PcssShared, what the pixel's quad has found; null:
-/// the pixel is alone in it.
+/// Steps 1 to 4. The pixel must not be background. `quad`: for Filter::PcssShared, what the pixel's quad has found;
+/// null: the pixel is alone in it.
 Visibility visibility(const LightModel& light, const Pixel& pixel, const ShadowInput& input,
                       const QuadFinding* quad = nullptr);
 /// The shadow fade of a light at a pixel.

@@ -66,8 +66,8 @@ void checkNeed(ShadowReport& report, std::size_t tile, const LightModel& light, 
     const bool slot = isSlot(entry.slotOrFlag);
     if (together.mustBeDark && (slot || !shared))
         report.findings.add("tile %zu: light %u is all dark but not flagged so", tile, entry.light);
-    const bool everyPixelVotes =
-        all.size() == gpu::kWorkGroupSize && std::all_of(all.begin(), all.end(), [](const Voter& v) { return v.surely; });
+    const bool everyPixelVotes = all.size() == gpu::kWorkGroupSize &&
+                                 std::all_of(all.begin(), all.end(), [](const Voter& v) { return v.surely; });
     if (together.mustBeLit && (!shared || (slot && everyPixelVotes)))
         report.findings.add("tile %zu: light %u is all lit but not flagged so", tile, entry.light);
 }

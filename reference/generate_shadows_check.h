@@ -4,12 +4,11 @@
 // Source: the specification, Phase 4, Overflow, and "Stored visibility is perceptual".
 //
 // What, for every light of a tile's early list: the tile's voting pixels (in the light's influence) each have an
-// interval of acceptable values (generate_shadows.h). ALL_UNLIT needs 0 to be acceptable everywhere, ALL_LIT the largest;
-// a slot needs each voting pixel's value in its interval, and not surely all dark or all lit. EVALUATE stands for a slot
-// where the pool is full. Pixels that only may vote bind nothing by themselves; a light that no pixel votes on may have
-// either flag.
-// Filter::PcssShared decides on a slot before it filters. So where a tile has pixels that do not vote, all lit may be
-// stored in a slot, and EVALUATE may stand for all dark or all lit.
+// interval of acceptable values (generate_shadows.h). ALL_UNLIT needs 0 to be acceptable everywhere, ALL_LIT the
+// largest; a slot needs each voting pixel's value in its interval, and not surely all dark or all lit. EVALUATE stands
+// for a slot where the pool is full. Pixels that only may vote bind nothing by themselves; a light that no pixel votes
+// on may have either flag. Filter::PcssShared decides on a slot before it filters. So where a tile has pixels that do
+// not vote, all lit may be stored in a slot, and EVALUATE may stand for all dark or all lit.
 //
 // Limits: early lists are taken as they are (find_lights_accurate.h checks them); tiles without list space have none.
 

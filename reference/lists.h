@@ -32,8 +32,8 @@ struct ListBuffers {
     std::span<const std::uint32_t> finalList;  ///< empty: phase 4 has not run
     std::span<const std::uint32_t> finalCounts;
     std::span<const std::uint32_t> visibility;
-    std::uint32_t listEntries = 0;      ///< capacity
-    std::uint32_t visibilitySlots = 0;  ///< capacity
+    std::uint32_t listEntries = 0;                  ///< capacity
+    std::uint32_t visibilitySlots = 0;              ///< capacity
     std::uint32_t lightLists = gpu::kListsByPixel;  ///< who writes the early lists
     std::uint32_t reservation = gpu::kReserveApproximate;
     std::uint32_t fixedEntries = 0;                          ///< for kReserveFixed

@@ -195,8 +195,7 @@ PcssSearch Pcss::search(Interval spreadMetres) const {
     for (int i = 0; i < input_.taps.search; ++i) taps.push_back(searchTap(i, spread));
     const SearchOutcome outcome = searchOutcome(taps);
     PcssSearch result = {outcome.mayBeDark, outcome.mayBeLit, outcome.mayBePartial, {}};
-    if (outcome.mayBePartial)
-        result.radiusPx = radiusPxOf(rounded(outcome.meanDepth, 2.0 * input_.taps.search + 8));
+    if (outcome.mayBePartial) result.radiusPx = radiusPxOf(rounded(outcome.meanDepth, 2.0 * input_.taps.search + 8));
     return result;
 }
 

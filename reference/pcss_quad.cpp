@@ -133,11 +133,10 @@ Interval roundedToParts(Interval radiusPx) {
 
 void Sharing::search(QuadFinding& out, std::size_t view) const {
     const PcssTapCounts taps = input_.pcssPresets[light_.pcssPreset];
-    const std::vector<DiskDirection> directions =
-        diskDirections(middle_.x, middle_.y, input_.patternTurn, taps.search);
+    const std::vector<DiskDirection> directions = diskDirections(middle_.x, middle_.y, input_.patternTurn, taps.search);
     const auto views = std::span(input_.views).subspan(light_.firstShadowView, light_.viewCount());
-    const PcssInput pcss = {views,      input_.atlases, view, rounded(light_.sourceRadius, 1), {taps.search, 0},
-                            directions, true};
+    const PcssInput pcss = {views, input_.atlases, view, rounded(light_.sourceRadius, 1), {taps.search, 0}, directions,
+                            true};
     const Facing facing = facingOf(light_, middle_);
     const bool always = input_.facedAwayIsDark || middle_.subsurface;
     for (const bool toward : {true, false}) {

@@ -38,8 +38,8 @@ QuadPixels quadOf(const PixelGrid& grid, std::uint32_t x, std::uint32_t y);
 struct QuadFinding {
     bool mayBeOwn = false;  ///< each pixel searches by itself
     bool mayBeDark = false, mayBeLit = false;
-    bool unknown = false;             ///< anything may come out
-    std::vector<Interval> radiiPx;    ///< of the filter, in texels
+    bool unknown = false;           ///< anything may come out
+    std::vector<Interval> radiiPx;  ///< of the filter, in texels
 };
 QuadFinding findQuad(const LightModel& light, const QuadPixels& quad, const ShadowInput& input);
 

@@ -28,8 +28,8 @@ bool ignoresFaceNormals(const ShadowInput& input) {
 std::vector<std::size_t> facesOf(const LightModel& light, const Pixel& pixel) {
     if (!light.sixFaces) return {0};
     const Vec3 v = pixel.position - light.position;
-    const double error =
-        2 * pixel.positionError + kFacingRoundings * kFloatRoundoff * (sumOfMagnitudes(light.position) + sumOfMagnitudes(v));
+    const double error = 2 * pixel.positionError +
+                         kFacingRoundings * kFloatRoundoff * (sumOfMagnitudes(light.position) + sumOfMagnitudes(v));
     const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     std::vector<std::size_t> result;
     for (int axis = 0; axis < 3; ++axis) {

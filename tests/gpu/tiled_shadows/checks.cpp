@@ -49,6 +49,24 @@ std::vector<bool> ownedEntries(const FrameResult& r) {
     return owned;
 }
 
+/// Words of the queues that no queue of the frame can have used, but were written.
+std::size_t strayQueueWords(const FrameResult& r, bool shadows) {
+    const std::size_t capacity = r.listCapacity;
+    std::vector<bool> used(2 * capacity, false);
+    const auto use = [&](std::size_t first, std::size_t count, std::size_t end) {
+        for (std::size_t i = first; i < first + count && i < end; ++i) used[i] = true;
+    };
+    for (const gpu::GpuPairQueue& queue : r.pairs.queues) {
+        if (!shadows || queue.searchCount + queue.filterCount == 0) continue;
+        use(queue.first, queue.searchCount, capacity);
+        use(capacity + queue.first, queue.filterCount, 2 * capacity);
+    }
+    std::size_t stray = 0;
+    for (std::size_t i = 0; i < r.queuedPairs.size(); ++i)
+        stray += (i >= used.size() || !used[i]) && r.queuedPairs[i] != kCanary;
+    return stray;
+}
+
 }  // namespace
 
 void checkCanaries(const FrameResult& r, bool shadows) {
@@ -67,6 +85,7 @@ void checkCanaries(const FrameResult& r, bool shadows) {
     const std::size_t used = shadows ? std::min(r.counters.visibilitySlots, r.slotCapacity) : 0;
     for (std::size_t i = used * r.slotWords(); i < r.visibility.size(); ++i) slots += r.visibility[i] != kCanary;
     EXPECT_EQ(early, 0u) << "words of the early list that no tile owns were written";
+    EXPECT_EQ(strayQueueWords(r, shadows), 0u) << "words of the queues that no pair has a place in were written";
     EXPECT_EQ(tiles, 0u) << "tiles of words that no tile owns were written";
     EXPECT_EQ(final, 0u) << "words of the final list that no tile owns were written";
     EXPECT_EQ(slots, 0u) << "words of visibility slots that nobody took were written";

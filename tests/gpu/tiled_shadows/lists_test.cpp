@@ -19,9 +19,10 @@ struct Way {
     LightLists lists;
     ListReservation reservation;
 };
-constexpr Way kWays[] = {{LightLists::Pixel, ListReservation::Approximate},  {LightLists::Pixel, ListReservation::Accurate},
-                         {LightLists::Pixel, ListReservation::Fixed},        {LightLists::Froxel, ListReservation::Approximate},
-                         {LightLists::Froxel, ListReservation::Accurate},    {LightLists::Froxel, ListReservation::Fixed}};
+constexpr Way kWays[] = {
+    {LightLists::Pixel, ListReservation::Approximate}, {LightLists::Pixel, ListReservation::Accurate},
+    {LightLists::Pixel, ListReservation::Fixed},       {LightLists::Froxel, ListReservation::Approximate},
+    {LightLists::Froxel, ListReservation::Accurate},   {LightLists::Froxel, ListReservation::Fixed}};
 
 TEST_P(ListsTest, DepthAndLightsOfARoom) {
     FrameInput input = makeRoomFrame({.widthPx = 136, .heightPx = 88});
@@ -76,8 +77,8 @@ std::vector<std::vector<DecodedEntry>> seenShadows(const FrameInput& input, cons
     return tiles;
 }
 
-// Phase 2's own lists are what it counts and gives its groups, and phase 3's are a part of them that leaves out darkness
-// alone.
+// Phase 2's own lists are what it counts and gives its groups, and phase 3's are a part of them that leaves out
+// darkness alone.
 TEST_P(ListsTest, ByFroxelAndByPixel) {
     RoomSetup setup{.seed = 21, .widthPx = 136, .heightPx = 72};
     setup.lights.filters = kAllBuiltInFilters;

@@ -96,7 +96,8 @@ TEST_P(MixedFiltersTest, EveryLightHasItsOwn) {
         EXPECT_LE(checked.shadows.looseShare(), 0.001);
         EXPECT_GT(checked.shadows.exactBytes, checked.shadows.bytes / 2);
         const std::map<Kind, std::size_t> slots = slotsByKind(input, result);
-        EXPECT_EQ(slots.size(), 3u * 6u);  // three types; hard, percentage closer, two soft ones each searched alone and shared
+        EXPECT_EQ(slots.size(),
+                  3u * 6u);  // three types; hard, percentage closer, two soft ones each searched alone and shared
         for (const auto& [kind, count] : slots)
             EXPECT_GT(count, 2u) << "type " << int(std::get<0>(kind)) << " filter " << int(std::get<1>(kind))
                                  << " preset " << std::get<2>(kind);

@@ -19,8 +19,8 @@ FrameInput crowdedRoom() {
     return makeRoomFrame(setup);
 }
 
-/// Every list that is left equals the one of a frame without overflow, but for EVALUATE in place of slots. `orFlags`: in
-/// place of flags, too, since it was not known yet that no slot is needed.
+/// Every list that is left equals the one of a frame without overflow, but for EVALUATE in place of slots. `orFlags`:
+/// in place of flags, too, since it was not known yet that no slot is needed.
 void expectSameButEvaluate(const FrameResult& full, const FrameResult& small, bool orFlags = false) {
     const auto fullLists = decodeFinalLists(full), smallLists = decodeFinalLists(small);
     ASSERT_EQ(fullLists.size(), smallLists.size());

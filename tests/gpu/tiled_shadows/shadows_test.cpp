@@ -22,14 +22,20 @@ struct FilterCase {
     std::uint32_t bits;
     double mostAmbiguous, mostLoose;  // shares of (pixel, light) pairs with more than one, two acceptable values
 };
-constexpr FilterCase kFilters[] = {
-    {Filter::Hard, 1, {}, 8, 0.001, 0.001},         {Filter::Hard, 1, {}, 4, 0.001, 0.001},
-    {Filter::Pcf, 1, {}, 8, 0.006, 0.001},          {Filter::Pcf, 2, {}, 4, 0.001, 0.001},
-    {Filter::Pcf, 3, {}, 8, 0.006, 0.001},          {kOff, 1, {}, 8, 0.0, 0.0},
-    {Filter::Pcss, 1, kPcssMedium, 8, 0.01, 0.001}, {Filter::Pcss, 1, kPcssHigh, 8, 0.01, 0.001},
-    {Filter::Pcss, 1, kPcssLow, 4, 0.001, 0.001},   {Filter::Pcss, 1, {1, 1}, 8, 0.01, 0.001},
-    {Filter::PcssShared, 1, kPcssMedium, 8, 0.01, 0.002}, {Filter::PcssShared, 1, kPcssHigh, 8, 0.01, 0.002},
-    {Filter::PcssShared, 1, kPcssLow, 4, 0.002, 0.001}, {Filter::PcssShared, 1, {1, 1}, 8, 0.01, 0.002}};
+constexpr FilterCase kFilters[] = {{Filter::Hard, 1, {}, 8, 0.001, 0.001},
+                                   {Filter::Hard, 1, {}, 4, 0.001, 0.001},
+                                   {Filter::Pcf, 1, {}, 8, 0.006, 0.001},
+                                   {Filter::Pcf, 2, {}, 4, 0.001, 0.001},
+                                   {Filter::Pcf, 3, {}, 8, 0.006, 0.001},
+                                   {kOff, 1, {}, 8, 0.0, 0.0},
+                                   {Filter::Pcss, 1, kPcssMedium, 8, 0.01, 0.001},
+                                   {Filter::Pcss, 1, kPcssHigh, 8, 0.01, 0.001},
+                                   {Filter::Pcss, 1, kPcssLow, 4, 0.001, 0.001},
+                                   {Filter::Pcss, 1, {1, 1}, 8, 0.01, 0.001},
+                                   {Filter::PcssShared, 1, kPcssMedium, 8, 0.01, 0.002},
+                                   {Filter::PcssShared, 1, kPcssHigh, 8, 0.01, 0.002},
+                                   {Filter::PcssShared, 1, kPcssLow, 4, 0.002, 0.001},
+                                   {Filter::PcssShared, 1, {1, 1}, 8, 0.01, 0.002}};
 
 void checkFilter(TestDevice& device, FrameInput input, const FilterCase& filter) {
     const int number = filter.filter ? int(*filter.filter) : -1;

@@ -75,8 +75,8 @@ TEST_P(Switching, EveryPictureIsThatOfAFreshRenderer) {
         EXPECT_EQ(kept.counts().resizes, resizes);
         // A few of them where a handful must do.
         const std::string name = change.name;
-        if (!thorough() && name != "hard" && name != "shared searches" && name != "lists by pixel" && name != "slots of 4 bits" && name != "wider cube faces" &&
-            name != "smaller")
+        if (!thorough() && name != "hard" && name != "shared searches" && name != "lists by pixel" &&
+            name != "slots of 4 bits" && name != "wider cube faces" && name != "smaller")
             continue;
         const Frame expected = drawOnce(device(), view, fresh, ShadowMode::Deferred);
         EXPECT_EQ(actual.linear.width, fresh.frame.widthPx);

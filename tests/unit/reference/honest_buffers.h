@@ -115,8 +115,7 @@ inline void fillTile(HonestBuffers& out, const TestFrame& frame, std::uint32_t t
         QuadFindings quads(light, frame.grid, frame.shadows);
         for (const auto [x, y] : frame.grid.tilePixels(tileX, tileY)) {
             if (inInfluence(light, frame.grid.at(x, y)) == Verdict::Never) continue;
-            const std::uint32_t q =
-                storedVisibility(light, frame.grid.at(x, y), frame.shadows, quads.at(x, y)).max;
+            const std::uint32_t q = storedVisibility(light, frame.grid.at(x, y), frame.shadows, quads.at(x, y)).max;
             dark = dark && q == 0;
             lit = lit && q == gpu::visibilityLevels(bits);
             const std::uint32_t lane = gpu::mortonLane(x % 8, y % 8);

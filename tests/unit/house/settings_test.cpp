@@ -34,7 +34,8 @@ std::vector<Case> cases() {
     return {
         SETTING(filters, 0u, true),
         SETTING(filters, kAllBuiltInFilters, true),
-        SETTING(filters, 0x10u, false),
+        SETTING(filters, only(Filter::PcssShared), true),
+        SETTING(filters, 0x20u, false),
         SETTING(filters, kAllBuiltInFilters | 0x80000000u, false),
         SETTING(filters, ~0u, false),
         SETTING(pcfRadius, 1u, true),
@@ -109,6 +110,8 @@ std::vector<Case> cases() {
         SETTING(visibilityBits, 5u, false),
         SETTING(visibilityBits, 16u, false),
         SETTING(visibilityBits, ~0u, false),
+        SETTING(lightLists, LightLists::Pixel, true),
+        SETTING(lightLists, static_cast<LightLists>(2), false),
         SETTING(listReservation, ListReservation::Approximate, true),
         SETTING(listReservation, static_cast<ListReservation>(3), false),
         SETTING(fixedListEntriesPerTile, ~0u, true),  // not looked at without ListReservation::Fixed
@@ -133,8 +136,8 @@ std::vector<Case> cases() {
 // A member that is new breaks this, so that it gets its rows above.
 TEST(Settings, AllMembersAreInTheTable) {
     const auto& [filters, pcfRadius, pcssPresets, pcssPresetCount, patternPerFrame, shadowBounds, depthBias,
-                 facedAwayIsDark, dropLightsFacedAway, subsurfaceBiasMetres, visibilityBits, listReservation,
-                 fixedListEntriesPerTile, hostDepthPyramid] = ShadowSettings{};
+                 facedAwayIsDark, dropLightsFacedAway, subsurfaceBiasMetres, visibilityBits, lightLists,
+                 listReservation, fixedListEntriesPerTile, hostDepthPyramid] = ShadowSettings{};
     (void)filters;
     EXPECT_TRUE(checkSettings({}));
 }
@@ -180,17 +183,19 @@ TEST(Settings, TheHostsFilterNeedsItsShader) {
     ASSERT_TRUE(Context::create(vulkan.desc(), context));
     const Result result = context->prepare(settings);
     EXPECT_EQ(result.status(), Status::BadArgument);
-    EXPECT_THAT(result.message(), HasSubstr("generateShadowsSpirv"));
+    EXPECT_THAT(result.message(), HasSubstr("filterPairsSpirv"));
     EXPECT_EQ(context->pipelineCount(), 0u);
     context.reset();
 
     ContextDesc desc = vulkan.desc();
     const std::uint32_t words[] = {1, 2, 3, 4, 5};
-    desc.generateShadowsSpirv = words;
+    desc.filterPairsSpirv = words;
     ASSERT_TRUE(Context::create(desc, context));
     ASSERT_TRUE(context->prepare(settings));
-    ASSERT_EQ(vulkan.pipelines.size(), 6u);
-    EXPECT_EQ(vulkan.pipelines[4].spirvBytes, sizeof(words));  // phase 4 is the host's
+    // The pipelines of the host's queues are the host's, one for each kind of shadow views, and made last.
+    ASSERT_EQ(vulkan.pipelines.size(), 10u);
+    for (std::size_t i = 0; i < 10; ++i)
+        EXPECT_EQ(vulkan.pipelines[i].spirvBytes == sizeof(words), i >= 7) << "pipeline " << i;
 }
 
 // Each member tells settings apart, and pipelines are shared by settings that their shaders cannot tell apart.
@@ -200,28 +205,33 @@ TEST(Settings, EqualSettingsHaveEqualPipelines) {
     ASSERT_TRUE(Context::create(vulkan.desc(), context));
     const ShadowSettings first;
     ASSERT_TRUE(context->prepare(first));
-    EXPECT_EQ(context->pipelineCount(), 6u);
+    const std::uint32_t ofFirst = 9;  // filter_pairs three times, no filter_tiles and no search_pairs
+    EXPECT_EQ(context->pipelineCount(), ofFirst);
     ASSERT_TRUE(context->prepare(first));
-    EXPECT_EQ(context->pipelineCount(), 6u);
+    EXPECT_EQ(context->pipelineCount(), ofFirst);
     const struct {
         std::function<void(ShadowSettings&)> change;
         std::uint32_t pipelines;
     } changes[] = {
-        {[](ShadowSettings& s) { s.filters = only(Filter::Pcf); }, 1},
-        {[](ShadowSettings& s) { s.pcfRadius = 2; }, 1},
+        {[](ShadowSettings& s) { s.filters = only(Filter::Pcf); }, 2},         // classify_pairs, filter_tiles
+        {[](ShadowSettings& s) { s.filters = only(Filter::PcssShared); }, 7},  // classify_pairs, and two three times
+        {[](ShadowSettings& s) { s.filters |= only(Filter::Pcf); }, 1},        // classify_pairs: the others are there
+        {[](ShadowSettings& s) { s.filters = 0; }, 2},                         // classify_pairs, filter_tiles
+        {[](ShadowSettings& s) { s.pcfRadius = 2; }, 3},
         {[](ShadowSettings& s) { s.pcssPresets[0] = kPcssHigh; }, 0},  // constants of the frame
-        {[](ShadowSettings& s) { s.pcssPresetCount = 2; }, 1},
+        {[](ShadowSettings& s) { s.pcssPresetCount = 2; }, 3},
         {[](ShadowSettings& s) { s.patternPerFrame = true; }, 0},
         {[](ShadowSettings& s) { s.shadowBounds = true; }, 0},
-        {[](ShadowSettings& s) { s.depthBias = DepthBias::Unbiased; }, 2},
-        {[](ShadowSettings& s) { s.facedAwayIsDark = false; }, 2},
+        {[](ShadowSettings& s) { s.depthBias = DepthBias::Unbiased; }, 4},
+        {[](ShadowSettings& s) { s.facedAwayIsDark = false; }, 4},
         {[](ShadowSettings& s) { s.dropLightsFacedAway = false; }, 0},
         {[](ShadowSettings& s) { s.subsurfaceBiasMetres = 0.0f; }, 0},
-        {[](ShadowSettings& s) { s.visibilityBits = 4; }, 1},
+        {[](ShadowSettings& s) { s.visibilityBits = 4; }, 3},
+        {[](ShadowSettings& s) { s.lightLists = LightLists::Pixel; }, 1},
         {[](ShadowSettings& s) { s.listReservation = ListReservation::Approximate; }, 2},
         {[](ShadowSettings& s) { s.hostDepthPyramid = true; }, 1},
     };
-    std::uint32_t expected = 6;
+    std::uint32_t expected = ofFirst;
     for (std::size_t i = 0; i < std::size(changes); ++i) {
         ShadowSettings settings;
         changes[i].change(settings);

@@ -20,7 +20,7 @@ namespace gnomon::test {
 namespace {
 
 constexpr std::uint32_t kHostProviderSpirv[] = {
-#include "generate_shadows_host_provider.spv.h"
+#include "filter_pairs_host_provider.spv.h"
 };
 
 /// SwiftShader comes with Debian's chromium and is known to no loader by itself.
@@ -106,7 +106,7 @@ ContextDesc TestDevice::contextDesc(const ContextSetup& setup) const {
     ContextDesc desc = renderer::contextDescOf(*device_);
     desc.subgroupSize = setup.subgroupSize;
     desc.maxShadowAtlases = setup.maxShadowAtlases;
-    if (setup.hostProvider) desc.generateShadowsSpirv = kHostProviderSpirv;
+    if (setup.hostProvider) desc.filterPairsSpirv = kHostProviderSpirv;
     return desc;
 }
 

@@ -12,7 +12,7 @@
 //     view.beginFrame(frame);                          // checks, and fills mapped memory
 //     view.recordHierarchicalDepth(commands);          // needs the host's depth
 //     view.recordFindLightsApproximate(commands);      // phase 2 \  need no shadowmap: may run on an async compute
-//     view.recordFindLightsAccurate(commands);         // phase 3 /  queue while shadowmaps are drawn
+//     view.recordFindLightsAccurate(commands);         // phase 3 /  queue while shadowmaps are drawn (LightLists)
 //     view.recordShadowBounds(commands);               // optional, needs the shadowmaps
 //     view.recordGenerateShadows(commands);            // phase 4, needs the shadowmaps
 //     ... the host's lighting, with listsSet(): see src/shading/tile_lights.glsl ...
@@ -178,17 +178,17 @@ public:
     /// input; the frame must then not be recorded. `report`, if given: what phase 1 kept and dropped.
     Result beginFrame(const FrameDesc& frame, PrepareReport* report = nullptr) noexcept;
 
-    // After a beginFrame() that succeeded. Each records one pass with its barriers, debug label and timeline row, and
+    // After a beginFrame() that succeeded. Each records its passes, with barriers, debug labels and timeline rows, and
     // leaves its own compute pipeline and descriptor sets bound. On one queue the library's buffers need no barrier by
     // the host, before or after. Across queues a semaphore is enough. The lists exist once per view: the next frame's
     // recordHierarchicalDepth() must wait for this frame's recordEndFrame().
     void recordHierarchicalDepth(VkCommandBuffer commands) noexcept;
     void recordFindLightsApproximate(VkCommandBuffer commands) noexcept;
-    /// Afterwards the early lists are visible to all shaders. A host that evaluates every shadow while lighting may
-    /// leave out phase 4.
+    /// Afterwards the early lists are visible to all shaders: record it with LightLists::Froxel, too, where it has no
+    /// pass. A host that evaluates every shadow while lighting may leave out phase 4.
     void recordFindLightsAccurate(VkCommandBuffer commands) noexcept;
     /// Optional, with ShadowSettings::shadowBounds: least and greatest depths of blocks of the atlases, made anew for
-    /// the shadow views that changed. Filter::Pcss then leaves out searches whose result they tell, in phase 4 as in
+    /// the shadow views that changed. Soft filters then leave out searches whose result they tell, in phase 4 as in
     /// the host's own shaders. Not a bit of the result changes. To be recorded after the shadowmaps are drawn;
     /// afterwards visible to all shaders.
     void recordShadowBounds(VkCommandBuffer commands) noexcept;

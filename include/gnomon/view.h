@@ -140,11 +140,11 @@ struct FrameStatistics {
     // Only with ViewDesc::statistics, else 0. Sums over all shadow tiles; an entry is one light of one tile.
     std::uint32_t tilesWithGeometry = 0;
     std::uint32_t approximateEntries = 0;   ///< after phase 2
-    std::uint32_t earlyEntries = 0;         ///< after phase 3
+    std::uint32_t earlyEntries = 0;         ///< in the lists before phase 4: see ShadowSettings::lightLists
     std::uint32_t earlyCastingEntries = 0;  ///< of these: of lights that cast
-    std::uint32_t finalEntries = 0;         ///< after phase 4, which drops lights that reach no lit pixel
+    std::uint32_t finalEntries = 0;         ///< after phase 4, without lights that are dark all over their tile
     std::uint32_t finalSlotEntries = 0;     ///< of these: with a visibility slot
-    std::uint32_t maxLightsInTile = 0;      ///< after phase 3
+    std::uint32_t maxLightsInTile = 0;      ///< before phase 4
 };
 
 /// The buffers of one camera. Not thread safe; different views are independent, and record calls of one frame may go to

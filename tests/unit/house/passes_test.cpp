@@ -10,6 +10,7 @@
 #include "core/passes.h"
 #include "core/view_buffers.h"
 #include "gpu_interface/numbers.h"
+#include "unit/house/fake_vulkan.h"
 #include "unit/house/reflection.h"
 
 namespace gnomon::house {
@@ -306,8 +307,15 @@ TEST(PassList, HasAShaderEachAndEachOnce) {
 }
 
 // What a shader does not show: which passes the GPU itself sizes. Recorder::dispatch() asserts that dispatches are
-// indirect where a pass declares it, and only there. The command must lie in a buffer of the view.
+// indirect where a pass declares it, and only there. The command must lie in a buffer of the view, made for it.
 TEST(PassList, DispatchesAreIndirectWhereDeclared) {
+    FakeVulkan vulkan;
+    std::unique_ptr<Context> context;
+    ASSERT_TRUE(Context::create(vulkan.desc(), context));
+    ViewDesc desc;
+    desc.maxWidthPx = desc.maxHeightPx = 64;
+    std::unique_ptr<View> view;
+    ASSERT_TRUE(View::create(*context, desc, view));
     std::vector<std::string> indirect;
     for (const Pass* pass : allPasses()) {
         for (const PassResource& r : pass->resources) {
@@ -316,6 +324,7 @@ TEST(PassList, DispatchesAreIndirectWhereDeclared) {
             const ViewBuffer* const buffer = bufferAt(r.set, r.binding);
             ASSERT_NE(buffer, nullptr) << pass->name;
             EXPECT_STREQ(buffer->name, "pair_queues") << pass->name;
+            EXPECT_NE(vulkan.usages.at(view->buffer(buffer->name)) & VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, 0u);
         }
     }
     EXPECT_THAT(indirect, ::testing::ElementsAre("classify_pairs", "search_pairs", "filter_pairs"));

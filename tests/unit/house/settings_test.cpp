@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <vector>
 
 #include "unit/house/fake_vulkan.h"
 
@@ -245,6 +248,92 @@ TEST(Settings, EqualSettingsHaveEqualPipelines) {
     const std::uint32_t made = vulkan.made;
     ASSERT_TRUE(context->prepare(first));
     EXPECT_EQ(vulkan.made, made);
+}
+
+// What a host gives for a frame of three lights without anything drawn: a spot with one view, a point light with six,
+// and a sun with one cascade.
+struct ThreeLights {
+    std::vector<Light> lights = std::vector<Light>(3);
+    std::vector<ShadowView> views = std::vector<ShadowView>(8);
+    FrameDesc frame;
+    ShadowAtlas atlas = {reinterpret_cast<VkImageView>(std::uintptr_t{7}), 256, 256};
+    std::vector<LightShadowViews> lightViews;
+
+    ThreeLights() {
+        constexpr LightType kTypes[] = {LightType::Spot, LightType::Point, LightType::Directional};
+        for (std::size_t i = 0; i < 3; ++i) {
+            lights[i].type = kTypes[i];
+            lights[i].position[2] = -3.0f;
+            lights[i].rangeMetres = 4.0f;
+        }
+        for (std::size_t i = 0; i < views.size(); ++i) {
+            ShadowView& view = views[i];
+            for (const std::size_t diagonal : {0u, 5u, 10u}) view.clipFromWorld[diagonal] = 1.0f;
+            view.orthographic = i == 7;
+            view.clipFromWorld[view.orthographic ? 15 : 11] = 1.0f;
+            view.widthPx = view.heightPx = 32;
+            view.xPx = static_cast<std::uint32_t>(32 * i);
+            view.farMetres = 10.0f;
+        }
+        frame.depth = {reinterpret_cast<VkImageView>(std::uintptr_t{5})};
+        frame.atlases = {&atlas, 1};
+        frame.shadowViews = views;
+    }
+    ThreeLights(const ThreeLights&) = delete;
+    ThreeLights& operator=(const ThreeLights&) = delete;
+
+    Result begin(View& view) {
+        ViewInput input;
+        input.widthPx = input.heightPx = 64;
+        // A camera that looks along -z, one metre to the near plane, reversed Z without end.
+        constexpr std::array<float, 16> kClip = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0};
+        std::ranges::copy(kClip, input.camera.clipFromView);
+        input.lights = lights;
+        PreparedLights prepared;
+        if (Result result = view.prepare(input, prepared); !result) return result;
+        lightViews.clear();
+        for (const LightOnScreen& light : prepared.visible) {
+            const LightShadowViews of[] = {{0, 1}, {1, 6}, {7, 1}};
+            lightViews.push_back(of[light.light]);
+        }
+        frame.lightViews = lightViews;
+        ++frame.frameNumber;
+        return view.beginFrame(frame);
+    }
+};
+
+// A frame makes the pipelines of the queues that its lights may fill, and no other. prepare() makes them all.
+TEST(Settings, FramesMakePipelinesOfTheirLightsAlone) {
+    FakeVulkan vulkan;
+    std::unique_ptr<Context> context;
+    ASSERT_TRUE(Context::create(vulkan.desc(), context));
+    ViewDesc desc;
+    desc.maxWidthPx = desc.maxHeightPx = 64;
+    std::unique_ptr<View> view;
+    ASSERT_TRUE(View::create(*context, desc, view));
+    ThreeLights host;
+    host.frame.settings.filters = kAllBuiltInFilters;
+    std::uint32_t expected = 0;
+    const auto begin = [&](const char* what, std::uint32_t more) {
+        const Result result = host.begin(*view);
+        ASSERT_TRUE(result) << what << ": " << result.message();
+        expected += more;
+        EXPECT_EQ(context->pipelineCount(), expected) << what;
+    };
+    for (Light& light : host.lights) light.filter = Filter::Hard;
+    begin("hard shadows go by tile", 7);
+    host.lights[0].filter = Filter::Pcss;
+    begin("a spot", 1);
+    host.lights[1].filter = Filter::Pcss;
+    begin("a point light", 1);
+    host.lights[2].filter = Filter::PcssShared;
+    begin("a sun, with a search", 2);
+    host.lights[0].filter = Filter::PcssShared;
+    host.lights[1].casts = false;
+    begin("a spot, with a search", 2);
+    begin("the same again", 0);
+    ASSERT_TRUE(context->prepare(host.frame.settings));
+    EXPECT_EQ(context->pipelineCount(), 7u + 3u + 6u);
 }
 
 }  // namespace

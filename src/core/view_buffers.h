@@ -46,6 +46,7 @@ enum ViewBufferId : std::uint32_t {
     kBufferQueuedPairs,
     kBufferShadowViews,
     kBufferShadowBounds,
+    kBufferShadowPlanes,
     kBufferShadowBoundsCells,
     kBufferReadback,
     kViewBufferCount,

@@ -17,6 +17,9 @@
 #include "generate_shadows/pair_queues.glsl"
 #include "visibility/visibility.glsl"
 
+const uint kNoVote = 0u;
+const uint kNotLit = 1u;   // the pixel is not wholly lit
+const uint kNotDark = 2u;  // it is not wholly dark
 const uint kPixelsPerWord = 32u / kVisibilityBits;
 
 shared uint stored[kWorkGroupSize];  // by lane, which is the pixel's place in the tile

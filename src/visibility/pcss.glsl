@@ -63,18 +63,19 @@ uint tapsForRadius(uint most, float radiusPx) {
     return min(uint(min(wanted, 64.0)) + 1u, most);
 }
 
-// `quad`: what the search of the pixel's quad has told; kQuadOwn: nothing. `fewer`: taps follow the penumbra's width.
-float pcssVisibility(GpuLight light, ShadowPoint s, uvec2 pixel, uint quad, bool fewer) {
+// `sharing`: the filter is "pcss_shared". `known`: its quad has searched, and `radius` is what it has found. Else the
+// pixel searches by itself.
+float pcssVisibility(GpuLight light, ShadowPoint s, uvec2 pixel, bool sharing, bool known, float radius) {
     PcssKernel k = pcssKernelOf(light, s, pixel);
     hidePlanesBehind(s);
     float visibility;
-    precise float radius = float(quad) * (1.0 / float(kQuadRadiusParts)) * k.texel;
-    if (quad == kQuadOwn) radius = searchBlockers(light, s, k, 0.0, visibility);
+    if (!known) radius = searchBlockers(light, s, k, 0.0, visibility);
     if (radius < 0.0) return visibility;
     uint preset = pcssPresetOf(light);
     uint taps = frame.pcssTaps[preset].filterTaps;
     float perTap = frame.pcssTaps[preset].perFilterTap;
-    if (fewer) {
+    if (sharing) {
+        radius = max(radius, k.texel);  // a next cascade is coarser
         precise float radiusPx = radius / k.texel;
         taps = tapsForRadius(taps, radiusPx);
         perTap = 1.0 / float(taps);

@@ -43,6 +43,13 @@ void placeDisk(ShadowPoint s, vec2 pxPerUnit, vec2 turn, inout PcssKernel k) {
     k.down = down;
 }
 
+// One texel of a view in the unit of radii: tangents, or metres.
+float texelOf(uint viewIndex) {
+    vec2 pxPerUnit = shadowViews[viewIndex].pxPerMetre;
+    precise float texel = 1.0 / max(pxPerUnit.x, pxPerUnit.y);
+    return texel;
+}
+
 PcssKernel pcssKernelOf(GpuLight light, ShadowPoint s, uvec2 pixel) {
     precise float a = shadowViews[s.view].depthFromLinearA;
     precise float inverseB = 1.0 / shadowViews[s.view].depthFromLinearB;
@@ -60,7 +67,7 @@ PcssKernel pcssKernelOf(GpuLight light, ShadowPoint s, uvec2 pixel) {
         radius0 = -r * (a * inverseB) - seen;
         widest = (1.0 / kNearestBlocker - 1.0) * seen;
     }
-    precise float texel = 1.0 / max(pxPerUnit.x, pxPerUnit.y);
+    float texel = texelOf(s.view);
     precise float cut = min(widest, float(kMaxPcssRadiusPx) * texel);
     placeDisk(s, pxPerUnit, turnOf(pixel), k);
     k.texel = texel;

@@ -44,17 +44,18 @@ void hidePlanesBehind(inout ShadowPoint s) {
 // What the shadow bounds tell of a search of radius `reach` that stays in the rectangle. True where they tell its whole
 // result. Else `needed` is the radius beyond which no blocker can be. It is found in two rounds: the nearest depth in a
 // region bounds what the source can see of the region, and the smaller region that is left may hold only farther
-// depths.
+// depths. In a region that is small in the end, the planes of the blocks are asked, too.
 bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, float spread, out float needed, out float visibility) {
     needed = reach;
     visibility = 1.0;
+    float farthest = -1.0;
     for (uint i = 0u; i < 2u; ++i) {
         vec2 extent = tapExtent(k, max(needed, k.texel));  // no filter is narrower than a texel
         bool known;
         vec2 bounds = shadowBoundsOver(s.view, s.corner + 0.5 - extent, s.corner + 0.5 + extent, known);
         if (!known) return false;
         float nearest = s.sign > 0.0 ? bounds.y : -bounds.x;
-        float farthest = s.sign > 0.0 ? bounds.x : -bounds.y;
+        farthest = s.sign > 0.0 ? bounds.x : -bounds.y;
         float rise = dot(abs(s.slope), extent);
         float slack = 1e-6 * abs(s.depth) + 1e-5 * rise;  // the taps' own rounding
         if (nearest <= max(s.depth - rise - slack, s.least)) return true;
@@ -64,10 +65,17 @@ bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, float spread, out f
         // The region of the source grows toward the light.
         float seen = fma(k.radius1, nearest, k.radius0) + kTapTexels * k.texel + spread;
         seen += 1e-5 * abs(seen) + 1e-6 * (abs(k.radius0) + k.radius1 * abs(nearest));
-        if (!(seen < needed)) return false;
+        if (!(seen < needed)) break;
         needed = max(seen, 0.0);
     }
-    return false;
+    vec2 extent = tapExtent(k, max(needed, k.texel));
+    DepthPlane plane = DepthPlane(s.corner, s.slope, s.depth, s.sign);
+    bool known;
+    vec2 height = heightOver(s.view, plane, s.corner + 0.5 - extent, s.corner + 0.5 + extent, known);
+    if (!known) return false;
+    if (height.y <= 0.0) return true;
+    visibility = 0.0;
+    return height.x > 0.0 && farthest > s.least;
 }
 
 float searchRadius(uint tap, float scale) {

@@ -25,25 +25,43 @@ layout(constant_id = kSpecPcfRadius) const uint kPcfRadius = 1;
 #include "gnomon_host_provider.glsl"  // glslc expands no macro here
 #endif
 
-// `quad`: what the search of the receiver's quad has told. It is kQuadOwn for filters without such a search.
-float viewVisibility(uint viewIndex, GpuLight light, Receiver receiver, uint quad) {
+// What the search of a receiver's quad has told, for its filter.
+struct KnownSearch {
+    bool known;    // else the pixel searches by itself
+    float radius;  // of the filter, in the unit of radii; below 0: `visibility` is known
+    float visibility;
+};
+
+KnownSearch knownSearch(uint quad, uint viewIndex) {
+    KnownSearch search = KnownSearch(quad != kQuadOwn, -1.0, 0.0);
+    if (quad == kQuadLit || quad == kQuadLitIfAsked) search.visibility = 1.0;
+    if (quad == kQuadDark || quad > kQuadMostRadius) return search;
+    precise float radius = float(quad) * (1.0 / float(kQuadRadiusParts)) * texelOf(viewIndex);
+    search.radius = radius;
+    return search;
+}
+
+float viewVisibility(uint viewIndex, GpuLight light, Receiver receiver, KnownSearch search) {
+    bool sharing = hasFilter(light, kFilterPcssShared);
+    if (sharing && search.known && search.radius < 0.0) return search.visibility;
     ShadowPoint s = shadowPointIn(viewIndex, light, receiver);
     if (!s.inFront) return 1.0;
     if (hasFilter(light, kFilterHard)) return hardVisibility(s);
     if (hasFilter(light, kFilterPcf)) return pcfVisibility(s);
-    bool shared2x2 = hasFilter(light, kFilterPcssShared);
-    if (shared2x2 || hasFilter(light, kFilterPcss)) return pcssVisibility(light, s, receiver.pixel, quad, shared2x2);
-    return 1.0;
+    if (!sharing && !hasFilter(light, kFilterPcss)) return 1.0;
+    return pcssVisibility(light, s, receiver.pixel, sharing, sharing && search.known, search.radius);
 }
 
+// `quad`: what the search of the receiver's quad has told. It is kQuadOwn for filters without such a search.
 float builtInVisibility(GpuLight light, Receiver receiver, uint quad) {
     ViewChoice choice = chooseView(light, receiver);
     if (choice.none) return 1.0;
+    KnownSearch search = knownSearch(quad, choice.view);
     precise float weight = 1.0 - choice.border;
     precise float visibility = 0.0;
     for (uint i = 0u; i < 2u; ++i) {  // a loop, so that the filter's code exists once
         precise float seen = 1.0;
-        if (i == 0u || !choice.last) seen = viewVisibility(choice.view + i, light, receiver, quad);
+        if (i == 0u || !choice.last) seen = viewVisibility(choice.view + i, light, receiver, search);
         visibility += weight * seen;
         if (choice.border == 0.0) break;
         weight = choice.border;
@@ -68,7 +86,7 @@ float visibilityWithQuad(GpuLight light, Receiver receiver, vec3 toLight, uint q
         if (hasFilter(light, kFilterHost)) visibility = hostVisibility(light, receiver, toLight);
         else
 #endif
-        visibility = quad == kQuadDark ? 0.0 : quad == kQuadLit || quad == kQuadLitIfAsked ? 1.0 : builtInVisibility(light, receiver, quad);
+        visibility = builtInVisibility(light, receiver, quad);
     }
     precise float faded = 1.0 - shadowFadeOf(light, receiver) * (1.0 - visibility);
     return faded;

@@ -53,7 +53,7 @@ struct ViewDesc {
     std::uint32_t mostListEntries = 0;
     std::uint32_t mostVisibilitySlots = 0;
     std::uint32_t maxShadowViews = 4096;
-    /// Texels of all shadow atlases and layers for which recordShadowBounds() keeps bounds (27 bytes per 256), their
+    /// Texels of all shadow atlases and layers for which recordShadowBounds() keeps bounds (11 bytes per 256), their
     /// sides rounded up to multiples of 256; frames with larger atlases do without. 0: never.
     std::uint64_t shadowBoundsTexels = std::uint64_t{8192} * 8192;
     bool statistics = true;  ///< sums over all tiles, in one small extra pass: see FrameStatistics

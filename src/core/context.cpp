@@ -28,8 +28,8 @@ Result checkDesc(const ContextDesc& desc) {
     return {};
 }
 
-// Lists (all but the frame's uniform buffer), shadow views, shadow bounds and planes, working buffers.
-constexpr std::uint32_t kStorageBuffersNeeded = kListsBindingCount - 1 + 3 + kWorkingBindingCount;
+// Lists (all but the frame's uniform buffer), shadow views and shadow bounds, working buffers.
+constexpr std::uint32_t kStorageBuffersNeeded = kListsBindingCount - 1 + 2 + kWorkingBindingCount;
 
 // The subgroup size that pipelines will ask for, checked against what the device can do.
 // `require` says whether they may ask for it: a device that cannot be asked always runs its own size.
@@ -90,7 +90,6 @@ Result createLayouts(Context::State& state) {
         if (set == kSetShadowmaps) {
             bindings[kBindShadowViews].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
             bindings[kBindShadowBounds].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-            bindings[kBindShadowPlanes].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
             bindings[kBindShadowSampler].descriptorType = VK_DESCRIPTOR_TYPE_SAMPLER;
             bindings[kBindShadowSampler].pImmutableSamplers = &state.shadowSampler;
         }

@@ -32,7 +32,6 @@ constexpr ViewBuffer kBuffers[kViewBufferCount] = {
     {"queued_pairs", BufferKind::Device, kSetWorking, kBindQueuedPairs},
     {"shadow_views", BufferKind::Streamed, kSetShadowmaps, kBindShadowViews},
     {"shadow_bounds", BufferKind::Device, kSetShadowmaps, kBindShadowBounds},
-    {"shadow_planes", BufferKind::Device, kSetShadowmaps, kBindShadowPlanes},
     {"shadow_bounds_cells", BufferKind::Streamed, kSetWorking, kBindShadowBoundsCells},
     {"statistics_readback", BufferKind::Readback, kNoSet, 0},
 };
@@ -141,11 +140,10 @@ ViewSizes viewSizesOf(const DeviceContext& device, const ViewDesc& desc) noexcep
     s.bytes[kBufferQueuedPairs] = 2 * s.bytes[kBufferFinalList];
     s.bytes[kBufferShadowViews] = VkDeviceSize(desc.maxShadowViews) * sizeof(GpuShadowView);
     // At least one cell, so that there is a buffer to bind.
-    const std::uint64_t mostCells = largest / std::max(shadowBoundsBytes(1), shadowPlanesBytes(1));
+    const std::uint64_t mostCells = largest / shadowBoundsBytes(1);
     const std::uint64_t cells = std::min<std::uint64_t>(shadowBoundsCellsFor(desc.shadowBoundsTexels), mostCells);
     s.boundsCells = std::max(static_cast<std::uint32_t>(cells), 1u);
     s.bytes[kBufferShadowBounds] = shadowBoundsBytes(s.boundsCells);
-    s.bytes[kBufferShadowPlanes] = shadowPlanesBytes(s.boundsCells);
     s.bytes[kBufferShadowBoundsCells] = VkDeviceSize(s.boundsCells) * sizeof(GpuShadowBoundsCell);
     s.bytes[kBufferReadback] = sizeof(GpuCounters) + sizeof(GpuEvaluateHead);
     return s;

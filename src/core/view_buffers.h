@@ -46,7 +46,6 @@ enum ViewBufferId : std::uint32_t {
     kBufferQueuedPairs,
     kBufferShadowViews,
     kBufferShadowBounds,
-    kBufferShadowPlanes,
     kBufferShadowBoundsCells,
     kBufferReadback,
     kViewBufferCount,

@@ -25,7 +25,8 @@ const uint kPixelsPerWord = 32u / kVisibilityBits;
 shared uint stored[kWorkGroupSize];  // by lane, which is the pixel's place in the tile
 shared uint subgroupVotes[kSubgroupCount];
 shared uint pairSlot;
-shared uint filteredQuads;  // a set
+shared uint searchingQuads;  // sets
+shared uint filteredQuads;
 
 uint wordOf(uint word) {
     uint packed = 0u;
@@ -73,11 +74,20 @@ uint codeOf(uint slot, uint quad) {
     return visibilityWords[slot * kVisibilitySlotWords + quad / 2u] >> (16u * (quad & 1u)) & 0xFFFFu;
 }
 
-// The lane's quad: the lane / 4-th of those in the set. kQuadsPerTile: none is left.
-uint quadOfLane(uint quads, uint lane) {
-    if (lane / 4u >= bitCount(quads)) return kQuadsPerTile;
-    for (uint i = lane / 4u; i > 0u; --i) quads &= quads - 1u;
-    return findLSB(quads);
+// The n-th of a set.
+uint nthOf(uint set, uint n) {
+    for (; n > 0u; --n) set &= set - 1u;
+    return findLSB(set);
+}
+
+// The lane's quad. Those whose pixels search by themselves come first, so that they share a warp; the other ones that
+// need a filter follow. kQuadsPerTile: none is left.
+uint quadOfLane(uint lane) {
+    uint n = lane / 4u;
+    uint searching = bitCount(searchingQuads);
+    if (n < searching) return nthOf(searchingQuads, n);
+    n -= searching;
+    return n < bitCount(filteredQuads) ? nthOf(filteredQuads, n) : kQuadsPerTile;
 }
 
 void filterQuads(Pair pair, GpuLight light, uint lane) {
@@ -85,12 +95,19 @@ void filterQuads(Pair pair, GpuLight light, uint lane) {
     bool fades = (light.typeAndFlags & kLightShadowFadesBit) != 0u;
     uint ownCode = codeOf(slot, lane / 4u);
     stored[lane] = ownCode == kQuadLit ? kVisibilityLevels : 0u;
-    if (lane == 0u) filteredQuads = 0u;
+    if (lane == 0u) {
+        searchingQuads = 0u;
+        filteredQuads = 0u;
+    }
     barrier();
     bool known = ownCode == kQuadDark || ownCode == kQuadLit;
-    if (lane % 4u == 0u && (fades || !known)) atomicOr(filteredQuads, 1u << lane / 4u);
+    if (lane % 4u == 0u && ownCode == kQuadOwn) {
+        atomicOr(searchingQuads, 1u << lane / 4u);
+    } else if (lane % 4u == 0u && (fades || !known)) {
+        atomicOr(filteredQuads, 1u << lane / 4u);
+    }
     barrier();
-    uint quad = quadOfLane(filteredQuads, lane);
+    uint quad = quadOfLane(lane);
     if (quad < kQuadsPerTile) {
         uint code = codeOf(slot, quad);
         uint place = 4u * quad + lane % 4u;

@@ -28,7 +28,6 @@ constexpr PassResource kResources[] = {
     {kSetShadowmaps, kBindShadowAtlas0 + 3, Access::Sampled},
     {kSetShadowmaps, kBindShadowSampler, Access::Sampled},
     {kSetShadowmaps, kBindShadowBounds, Access::Read},
-    {kSetShadowmaps, kBindShadowPlanes, Access::Read},
     {kSetWorking, kBindCounters, Access::Write},
     {kSetWorking, kBindListTiles, Access::Read},
     {kSetWorking, kBindPairQueues, Access::Read},

@@ -30,7 +30,6 @@ constexpr PassResource kResources[] = {
     {kSetShadowmaps, kBindShadowAtlas0 + 3, Access::Sampled},
     {kSetShadowmaps, kBindShadowSampler, Access::Sampled},
     {kSetShadowmaps, kBindShadowBounds, Access::Read},
-    {kSetShadowmaps, kBindShadowPlanes, Access::Read},
     {kSetWorking, kBindCounters, Access::Write},
 };
 constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize, kSpecFilters, kSpecPcfRadius, kSpecPcssPresets, kSpecVisibilityBits, kSpecShadowAtlases, kSpecDepthBias, kSpecFacedAwayIsDark, kSpecShadowViews};

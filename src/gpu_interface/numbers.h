@@ -96,8 +96,6 @@ GNOMON_CONSTANT GNOMON_UINT kShadowBoundsCellPx = kShadowBoundsBlockPx << (kShad
 GNOMON_CONSTANT GNOMON_UINT kShadowBoundsCellBlocks = 1u << (kShadowBoundsLevels - 1u);
 // 256 + 64 + 16 + 4 + 1 blocks of a cell, rounded up: 8 bytes each, 2.8 MB for an atlas of 8192x8192.
 GNOMON_CONSTANT GNOMON_UINT kShadowBoundsCellEntries = 344u;
-// Blocks of the finest level in a cell, of each of which a plane is kept: 16 bytes each, 4.2 MB for 8192x8192.
-GNOMON_CONSTANT GNOMON_UINT kShadowBoundsCellPlanes = kShadowBoundsCellBlocks * kShadowBoundsCellBlocks;
 GNOMON_CONSTANT GNOMON_UINT kMaxPcssTaps = 64u;
 // A penumbra is never wider than this radius in texels; what a source asks for beyond is cut.
 GNOMON_CONSTANT GNOMON_UINT kMaxPcssRadiusPx = 48u;
@@ -228,8 +226,7 @@ GNOMON_CONSTANT GNOMON_UINT kBindShadowViews = 0u;
 GNOMON_CONSTANT GNOMON_UINT kBindShadowAtlas0 = 1u;  // and the next kMaxShadowAtlases - 1
 GNOMON_CONSTANT GNOMON_UINT kBindShadowSampler = kBindShadowAtlas0 + kMaxShadowAtlases;  // nearest, clamped
 GNOMON_CONSTANT GNOMON_UINT kBindShadowBounds = kBindShadowSampler + 1u;
-GNOMON_CONSTANT GNOMON_UINT kBindShadowPlanes = kBindShadowBounds + 1u;
-GNOMON_CONSTANT GNOMON_UINT kShadowmapsBindingCount = kBindShadowPlanes + 1u;
+GNOMON_CONSTANT GNOMON_UINT kShadowmapsBindingCount = kBindShadowBounds + 1u;
 // Working buffers of the view's passes.
 GNOMON_CONSTANT GNOMON_UINT kBindCounters = 0u;
 GNOMON_CONSTANT GNOMON_UINT kBindApproximateCounts = 1u;

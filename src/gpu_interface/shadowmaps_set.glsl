@@ -26,29 +26,19 @@ layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowAtlas0 + 1) uniform tex
 layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowAtlas0 + 2) uniform texture2DArray shadowAtlas2;
 layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowAtlas0 + 3) uniform texture2DArray shadowAtlas3;
 layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowSampler) uniform sampler shadowSampler;
-// Least and greatest device depth of blocks of texels, and a plane of each block of the finest level: its slope per
-// texel, and the least and the greatest of what is left of the depths, at the block's first texel. See
-// shadow_bounds/shadow_bounds.comp.
+// Least and greatest device depth of blocks of texels: see shadow_bounds/shadow_bounds.comp.
 #ifdef GNOMON_SHADOW_BOUNDS_ACCESS
 layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowBounds, std430) restrict writeonly buffer ShadowBoundsBlock {
     vec2 shadowBounds[];
 };
-layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowPlanes, std430) restrict writeonly buffer ShadowPlanesBlock {
-    vec4 shadowPlanes[];
-};
 #else
 layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowBounds, std430) restrict readonly buffer ShadowBoundsBlock {
     vec2 shadowBounds[];
-};
-layout(set = GNOMON_SHADOWMAPS_SET, binding = kBindShadowPlanes, std430) restrict readonly buffer ShadowPlanesBlock {
-    vec4 shadowPlanes[];
 };
 #endif
 
 uint shadowBoundsIndex(uint first, uint row, uint blocks, uint level, uvec2 block) {
     return first + shadowBoundsLevelOffset(blocks, level) + block.y * (row >> level) + block.x;
 }
-
-uint shadowPlaneIndex(uint first, uint row, uvec2 block) { return first + block.y * row + block.x; }
 
 #endif

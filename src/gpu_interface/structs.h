@@ -69,7 +69,7 @@ struct GpuShadowView {
     uint boundsFirst;    // shadow bounds: entry of the first block of the atlas layer,
     uint boundsRow;      // blocks of the finest level in a row,
     uint boundsBlocks;   // and in all; 0: the view has no bounds
-    uint planesFirst;    // shadow planes: entry of the first block
+    uint reserved;
     // What gives the slope of a plane's depth. Take a plane with unit normal n, and m = (n planeX, n planeY, n planeZ).
     // The normal's part along the ray through ndc, per metre of linear depth, is
     //     k = m.x ndc.x + m.y ndc.y + m.z    (orthographic: k = m.z).
@@ -97,12 +97,8 @@ struct GpuShadowBoundsCell {
     uint first;  // as in GpuShadowView
     uint row;
     uint blocks;
-    uint planesFirst;
     float atlasPerTexelX;
     float atlasPerTexelY;
-    uint reserved0;
-    uint reserved1;
-    uint reserved2;
 };
 
 // Taps of soft shadows, one over the square of the number of search taps, and one over that of filter taps.
@@ -241,7 +237,7 @@ static_assert(offsetof(Specialization, shadowViews) == 4 * kSpecShadowViews);
 
 static_assert(sizeof(GpuLight) == 96);
 static_assert(sizeof(GpuShadowView) == 208);
-static_assert(sizeof(GpuShadowBoundsCell) == 48);
+static_assert(sizeof(GpuShadowBoundsCell) == 32);
 static_assert(sizeof(GpuFrame) == 16 * (16 + kMaxPcssTaps));
 static_assert(sizeof(GpuCounters) == 52);
 static_assert(sizeof(GpuPairQueue) == 48);

@@ -29,7 +29,26 @@ float offPlaneMetres(float d, float rounding, Receiver r) {
     return metres;
 }
 
-Receiver receiverAt(uvec2 pixel) {
+// What the host's images hold of a pixel. All are read at once: one that waited for another would double the time until
+// a shadow can begin.
+struct HostPixel {
+    float depth;
+    uvec2 faceNormal;
+    uvec2 flags;
+};
+
+// Pixels beyond the extent repeat its last ones.
+HostPixel hostPixelAt(uvec2 pixel) {
+    ivec2 texel = ivec2(min(pixel, frame.extentPx - 1u) + frame.viewportPx);
+    HostPixel host = HostPixel(texelFetch(hostDepth, texel, 0).x, uvec2(0u), uvec2(0xFFu, 0u));
+    if (kNeedsFaceNormals && (frame.flags & kFrameFaceNormalsBit) != 0u) {
+        host.faceNormal = texelFetch(hostFaceNormals, texel, 0).xy;
+    }
+    if ((frame.flags & kFrameReceiverFlagsBit) != 0u) host.flags = texelFetch(hostReceiverFlags, texel, 0).xy;
+    return host;
+}
+
+Receiver receiverOf(uvec2 pixel, HostPixel host) {
     Receiver r;
     r.positionWs = vec3(0.0);
     r.faceNormalWs = vec3(0.0, 0.0, 1.0);
@@ -38,29 +57,25 @@ Receiver receiverAt(uvec2 pixel) {
     r.pixel = pixel;
     r.mask = 0xFFu;
     r.subsurface = false;
-    r.valid = all(lessThan(pixel, frame.extentPx));
-    if (!r.valid) return r;
-    float d = hostDepthAt(pixel);
-    r.valid = !isBackground(d);
+    float d = host.depth;
+    r.valid = all(lessThan(pixel, frame.extentPx)) && !isBackground(d);
     if (!r.valid) return r;
     r.viewDepth = viewDepthOf(d);
     r.positionWs = worldFromPixel(vec2(pixel) + 0.5, r.viewDepth);
     precise float rounding = kDeviceDepthRounding * d + frame.hostDepthStep;
-    ivec2 texel = ivec2(pixel + frame.viewportPx);
     if (!kNeedsFaceNormals) {
         r.faceNormalWs = vec3(0.0);
     } else if ((frame.flags & kFrameFaceNormalsBit) != 0u) {
-        r.faceNormalWs = decodeOctahedral(texelFetch(hostFaceNormals, texel, 0).xy);
+        r.faceNormalWs = decodeOctahedral(host.faceNormal);
     } else {
         r.faceNormalWs = faceNormalFromDepth(pixel, d, r.viewDepth, rounding);
     }
     r.offPlaneMetres = offPlaneMetres(d, rounding, r);
-    if ((frame.flags & kFrameReceiverFlagsBit) != 0u) {
-        uvec2 flags = texelFetch(hostReceiverFlags, texel, 0).xy;
-        r.mask = flags.x;
-        r.subsurface = (flags.y & kReceiverSubsurfaceBit) != 0u;
-    }
+    r.mask = host.flags.x;
+    r.subsurface = (host.flags.y & kReceiverSubsurfaceBit) != 0u;
     return r;
 }
+
+Receiver receiverAt(uvec2 pixel) { return receiverOf(pixel, hostPixelAt(pixel)); }
 
 #endif

@@ -35,10 +35,6 @@ std::uint64_t shadowBoundsBytes(std::uint32_t cells) noexcept {
     return std::uint64_t(cells) * kShadowBoundsCellEntries * sizeof(vec2);
 }
 
-std::uint64_t shadowPlanesBytes(std::uint32_t cells) noexcept {
-    return std::uint64_t(cells) * kShadowBoundsCellPlanes * sizeof(vec4);
-}
-
 void ShadowBoundsCells::create(std::uint32_t capacity) {
     capacity_ = capacity;
     state_.assign(capacity, Cell::Unknown);
@@ -77,7 +73,6 @@ std::uint32_t ShadowBoundsCells::list(std::span<const ShadowView> views, std::sp
         gpuViews[i].boundsFirst = layerCell * kShadowBoundsCellEntries;
         gpuViews[i].boundsRow = row;
         gpuViews[i].boundsBlocks = blocks;
-        gpuViews[i].planesFirst = layerCell * kShadowBoundsCellPlanes;
         forEachCell(view, layerCell, grid.columns, [&](std::uint32_t cell, std::uint32_t x, std::uint32_t y) {
             if (state_[cell] == Cell::Listed || (state_[cell] == Cell::Made && !view.changed)) return;
             state_[cell] = Cell::Listed;
@@ -87,12 +82,8 @@ std::uint32_t ShadowBoundsCells::list(std::span<const ShadowView> views, std::sp
                             layerCell * kShadowBoundsCellEntries,
                             row,
                             blocks,
-                            layerCell * kShadowBoundsCellPlanes,
                             1.0f / static_cast<float>(atlas.widthPx),
-                            1.0f / static_cast<float>(atlas.heightPx),
-                            0,
-                            0,
-                            0};
+                            1.0f / static_cast<float>(atlas.heightPx)};
         });
     }
     return count;

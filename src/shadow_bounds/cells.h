@@ -15,8 +15,6 @@ namespace gnomon {
 std::uint32_t shadowBoundsCellsFor(std::uint64_t texels) noexcept;
 // Bytes of the bounds of so many cells, all levels.
 std::uint64_t shadowBoundsBytes(std::uint32_t cells) noexcept;
-// Bytes of the planes of their blocks.
-std::uint64_t shadowPlanesBytes(std::uint32_t cells) noexcept;
 
 // Remembers which cells hold bounds of what the atlases hold. In a frame with bounds call list(), and made() if the
 // pass is recorded. In a frame without them call skip(). Not thread safe.

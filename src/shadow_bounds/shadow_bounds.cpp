@@ -14,7 +14,6 @@ constexpr PassResource kResources[] = {
     {kSetShadowmaps, kBindShadowAtlas0, Access::Sampled},     {kSetShadowmaps, kBindShadowAtlas0 + 1, Access::Sampled},
     {kSetShadowmaps, kBindShadowAtlas0 + 2, Access::Sampled}, {kSetShadowmaps, kBindShadowAtlas0 + 3, Access::Sampled},
     {kSetShadowmaps, kBindShadowSampler, Access::Sampled},    {kSetShadowmaps, kBindShadowBounds, Access::Write},
-    {kSetShadowmaps, kBindShadowPlanes, Access::Write},
     {kSetWorking, kBindShadowBoundsCells, Access::Streamed},
 };
 constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize, kSpecShadowAtlases};

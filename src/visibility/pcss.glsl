@@ -64,16 +64,20 @@ uint tapsForRadius(uint most, float radiusPx) {
 }
 
 // `sharing`: the filter is "pcss_shared". `known`: its quad has searched, and `radius` is what it has found. Else the
-// pixel searches by itself.
+// pixel searches by itself; with "pcss_shared" it takes half of the taps for that.
 float pcssVisibility(GpuLight light, ShadowPoint s, uvec2 pixel, bool sharing, bool known, float radius) {
     PcssKernel k = pcssKernelOf(light, s, pixel);
     hidePlanesBehind(s);
+    GpuPcssTaps preset = frame.pcssTaps[pcssPresetOf(light)];
     float visibility;
-    if (!known) radius = searchBlockers(light, s, k, 0.0, visibility);
+    if (!known) {
+        uint taps = sharing ? (preset.searchTaps + 1u) / 2u : preset.searchTaps;
+        precise float perTapSquared = sharing ? 1.0 / float(taps * taps) : preset.perSearchTapSquared;
+        radius = searchBlockers(light, s, k, 0.0, taps, perTapSquared, visibility);
+    }
     if (radius < 0.0) return visibility;
-    uint preset = pcssPresetOf(light);
-    uint taps = frame.pcssTaps[preset].filterTaps;
-    float perTap = frame.pcssTaps[preset].perFilterTap;
+    uint taps = preset.filterTaps;
+    float perTap = preset.perFilterTap;
     if (sharing) {
         radius = max(radius, k.texel);  // a next cascade is coarser
         precise float radiusPx = radius / k.texel;

@@ -74,7 +74,8 @@ uint searchForQuad(GpuLight light, QuadReceivers all, uvec2 pixel) {
     precise float spread = sqrt(dot(diagonal, diagonal));
     if (!isOrthographicView(shadowViews[all.view])) spread = spread / s.linear;
     float visibility;
-    float radius = searchBlockers(light, s, k, spread, visibility);
+    GpuPcssTaps preset = frame.pcssTaps[pcssPresetOf(light)];
+    float radius = searchBlockers(light, s, k, spread, preset.searchTaps, preset.perSearchTapSquared, visibility);
     if (radius < 0.0) return visibility == 0.0 ? kQuadDark : kQuadLit;
     precise float parts = radius / k.texel * float(kQuadRadiusParts) + 0.5;
     return clamp(uint(parts), 1u, kQuadMostRadius);
@@ -84,8 +85,10 @@ uint searchForQuad(GpuLight light, QuadReceivers all, uvec2 pixel) {
 QuadSearch searchQuad(GpuLight light, uvec2 first) {
     QuadSearch quad = QuadSearch(kQuadDark, 0u, 0u);
     QuadReceivers all;
+    HostPixel host[4];
+    for (uint i = 0u; i < 4u; ++i) host[i] = hostPixelAt(first + uvec2(i & 1u, i >> 1u));
     for (uint i = 0u; i < 4u; ++i) {
-        Receiver r = receiverAt(first + uvec2(i & 1u, i >> 1u));
+        Receiver r = receiverOf(first + uvec2(i & 1u, i >> 1u), host[i]);
         vec3 toLight;
         if (!r.valid || !lightReaches(light, r.positionWs, r.mask, toLight)) continue;
         ++quad.reached;

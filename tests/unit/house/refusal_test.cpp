@@ -105,9 +105,9 @@ TEST(Refusal, MissingSubgroupOperations) {
 
 TEST(Refusal, TooFewStorageBuffers) {
     FakeVulkan vulkan;
-    vulkan.storageBuffersPerStage = 20;
+    vulkan.storageBuffersPerStage = 19;
     expectRefused(vulkan, vulkan.desc(), Status::UnsupportedDevice, "storage buffers");
-    vulkan.storageBuffersPerStage = 21;
+    vulkan.storageBuffersPerStage = 20;
     std::unique_ptr<Context> context;
     EXPECT_TRUE(Context::create(vulkan.desc(), context));
 }

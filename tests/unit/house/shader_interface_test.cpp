@@ -52,7 +52,7 @@ std::vector<MemberLayout> gpuShadowView() {
             MEMBER(GpuShadowView, atlasAndLayer),    MEMBER(GpuShadowView, pxPerMetre),
             MEMBER(GpuShadowView, atlasPerTexel),    MEMBER(GpuShadowView, boundsFirst),
             MEMBER(GpuShadowView, boundsRow),        MEMBER(GpuShadowView, boundsBlocks),
-            MEMBER(GpuShadowView, planesFirst),      MEMBER(GpuShadowView, planeX),
+            MEMBER(GpuShadowView, reserved),         MEMBER(GpuShadowView, planeX),
             MEMBER(GpuShadowView, planeSlopePerPxX), MEMBER(GpuShadowView, planeY),
             MEMBER(GpuShadowView, planeSlopePerPxY), MEMBER(GpuShadowView, planeZ),
             MEMBER(GpuShadowView, depthStep),        MEMBER(GpuShadowView, tangentPerNdc),
@@ -66,12 +66,8 @@ std::vector<MemberLayout> gpuShadowBoundsCell() {
             MEMBER(GpuShadowBoundsCell, first),
             MEMBER(GpuShadowBoundsCell, row),
             MEMBER(GpuShadowBoundsCell, blocks),
-            MEMBER(GpuShadowBoundsCell, planesFirst),
             MEMBER(GpuShadowBoundsCell, atlasPerTexelX),
-            MEMBER(GpuShadowBoundsCell, atlasPerTexelY),
-            MEMBER(GpuShadowBoundsCell, reserved0),
-            MEMBER(GpuShadowBoundsCell, reserved1),
-            MEMBER(GpuShadowBoundsCell, reserved2)};
+            MEMBER(GpuShadowBoundsCell, atlasPerTexelY)};
 }
 
 std::vector<MemberLayout> gpuPcssTaps() {
@@ -216,7 +212,6 @@ Blocks sharedBlocks() {
          {structAt(0, gpuEvaluateHead()), arrayAt(sizeof(GpuEvaluateHead), 4, {memberAt<uint>(0)})}},
         {{kSetShadowmaps, kBindShadowViews}, {arrayAt(0, sizeof(GpuShadowView), gpuShadowView())}},
         {{kSetShadowmaps, kBindShadowBounds}, {arrayAt(0, 8, {memberAt<vec2>(0)})}},
-        {{kSetShadowmaps, kBindShadowPlanes}, {arrayAt(0, 16, {memberAt<vec4>(0)})}},
     };
 }
 
@@ -577,7 +572,7 @@ TEST(ShaderInterface, DescriptorsAreFew) {
         const auto count = [&](VkDescriptorType type) {
             return std::ranges::count(shader.resources, type, &ResourceLayout::type);
         };
-        EXPECT_LE(count(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 18) << shader.name;
+        EXPECT_LE(count(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), 17) << shader.name;
         EXPECT_LE(count(VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER), 2) << shader.name;
         EXPECT_LE(count(VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE), 12) << shader.name;
         EXPECT_LE(count(VK_DESCRIPTOR_TYPE_SAMPLER), 1) << shader.name;

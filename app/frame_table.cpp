@@ -33,13 +33,14 @@ void printMemory(const FrameResult& result) {
     fmt::print("{:<28} {:<8} {:>10.3f}\n", "all", "renderer", static_cast<double>(renderer) / kMiB);
 }
 
-void printCounters(const FrameResult& result) {
+void printCounters(const FrameResult& result, LightLists lists) {
     const FrameStatistics& s = result.report.statistics;
     const renderer::FrameReport& r = result.report;
     fmt::print("\nLights: {} given, {} visible, {} casting, {} directional, {} dropped.\n", s.lights.given,
                s.lights.visible, s.lights.casting, s.lights.directional, s.lights.dropped);
-    fmt::print("Lights per tile with geometry: {:.2f}, shadowed {:.2f}; most in a tile {}.\n",
-               meanPerTile(s.earlyEntries, s), meanPerTile(s.earlyCastingEntries, s), s.maxLightsInTile);
+    fmt::print("Lights per tile with geometry, by {}: {:.2f}, shadowed {:.2f}; most in a tile {}.\n",
+               lists == LightLists::Froxel ? "froxel" : "pixel", meanPerTile(s.earlyEntries, s),
+               meanPerTile(s.earlyCastingEntries, s), s.maxLightsInTile);
     fmt::print("List entries: {} of {}; tiles without space: {}.\n", s.listEntries, s.listCapacity,
                s.listOverflowTiles);
     fmt::print("Visibility slots: {} of {}; entries without one: {}.\n", s.visibilitySlots, s.slotCapacity,
@@ -127,7 +128,7 @@ void printFrame(const Session& session, const FrameResult& result) {
                settings.filter, session.device().info().name);
     printPasses(result.report);
     printMemory(result);
-    printCounters(result);
+    printCounters(result, desc.shadows.lightLists);
     printAdvice(result);
     if (result.clippedPixels != 0)
         fmt::print("{} pixels are brighter than {:g}, the most that the picture holds: they are clipped{}.\n",

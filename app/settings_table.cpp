@@ -147,9 +147,8 @@ std::vector<Setting> makeTable() {
          .name = "pcss-taps",
          .key = "pcssTaps",
          .member = &S::taps,
-         .help =
-             "Taps of the search and of the filter of pcss. Several, parted by slashes, take turns among the lights "
-             "with pcss",
+         .help = "Taps of the search and of the filter of pcss and pcss-shared. Several, parted by slashes, take turns "
+                 "among the lights with them",
          .check = checkedBy(checkPresets),
          .range =
              fmt::format("low, medium, high, or SEARCH,FILTER as in 16,24, each from 1 to {}; or up to {} of these "
@@ -159,12 +158,12 @@ std::vector<Setting> makeTable() {
          .name = "pattern-per-frame",
          .key = "patternPerFrame",
          .member = &S::patternPerFrame,
-         .help = "Turn the sample pattern of pcss from frame to frame"});
+         .help = "Turn the sample pattern of pcss and pcss-shared from frame to frame"});
     add({.group = kFilter,
          .name = "no-shadow-bounds",
          .key = "noShadowBounds",
          .member = &S::noShadowBounds,
-         .help = "pcss searches everywhere, also where the bounds of the shadowmaps tell the result"});
+         .help = "pcss and pcss-shared search everywhere, also where the bounds of the shadowmaps tell the result"});
     add({.group = kFilter,
          .name = "visibility-bits",
          .key = "visibilityBits",
@@ -283,8 +282,9 @@ std::vector<Setting> makeTable() {
          .name = "light-lists",
          .key = "lightLists",
          .member = &S::lightLists,
-         .help = "Which lights a tile's list holds before shadows are evaluated: froxel: those that may reach the tile; "
-                 "pixel: those that reach a pixel of it, which costs a pass more (the paper's phase 3)",
+         .help =
+             "Which lights a tile's list holds before shadows are evaluated: froxel: those that may reach the tile; "
+             "pixel: those that reach a pixel of it, which costs a pass more (the paper's phase 3)",
          .choices = {"froxel", "pixel"}});
     add({.group = kPools,
          .name = "reservation",

@@ -24,6 +24,7 @@
 #include "renderer/gpu/device.h"
 #include "renderer/lighting/lighting_pipelines.h"
 #include "renderer/shared_pipelines.h"
+#include "scene/filter_names.h"
 
 namespace gnomon {
 namespace {
@@ -32,7 +33,7 @@ using renderer::Device;
 using renderer::DeviceInfo;
 using renderer::GpuError;
 
-// The visibility providers that are compared: a row for each wherever shadows are evaluated.
+// The visibility providers that are compared: a row for each wherever shadows are evaluated. The last one has all.
 struct Provider {
     const char* name;
     FilterSet filters;
@@ -43,8 +44,10 @@ constexpr Provider kProviders[] = {
     {"pcf, radius 1", only(Filter::Pcf), 1},
     {"pcf, radius 3", only(Filter::Pcf), 3},
     {"pcss", only(Filter::Pcss), 1},
-    {"hard, pcf and pcss", kAllBuiltInFilters, 1},
+    {"pcss-shared", only(Filter::PcssShared), 1},
+    {"hard, pcf and both pcss", kAllBuiltInFilters, 1},
 };
+constexpr const char* kShadowViewsNames[gpu::kShadowViewsKinds + 1] = {"any", "one view", "six faces", "cascades"};
 
 // A figure of a pipeline, under the names that drivers give it.
 struct Column {
@@ -138,6 +141,7 @@ void checkExtension(const DeviceInfo& info) {
 // --- The pipelines ---------------------------------------------------------------------------------------------------
 
 struct Row {
+    std::size_t place = 0;  // in the order of execution
     std::string name;
     std::uint32_t lanes = 0;
     Statistics statistics;
@@ -155,6 +159,41 @@ std::unique_ptr<Context> makeContext(const Device& device, std::uint32_t lanes) 
     return context;
 }
 
+constexpr const char* kLightingNames[] = {"lighting_deferred", "lighting_evaluate", "lighting_inline",
+                                          "lighting_unshadowed", "lighting_inline, lists alone"};
+
+bool evaluatesShadows(const std::string& pipeline) {
+    return pipeline == "filter_tiles" || pipeline == "lighting_evaluate" || pipeline.starts_with("lighting_inline");
+}
+
+Row rowOf(std::size_t place, const std::string& pipeline, const Provider& provider) {
+    const std::string suffix = evaluatesShadows(pipeline) ? fmt::format(" ({})", provider.name) : "";
+    return {place, pipeline + suffix};
+}
+
+// A pass that has a pipeline per queue: its filter and its kind of shadow views say which.
+Row rowOf(PassId pass, Filter filter, std::uint32_t kind) {
+    return {pass, fmt::format("{} ({}, {})", passOf(pass).name, nameOf(filter), kShadowViewsNames[kind])};
+}
+
+// What Context::prepare() makes, in the order in which it does.
+std::vector<Row> libraryRows(const Provider& provider) {
+    std::vector<Row> rows;
+    for (std::uint32_t id = 0; id < kPassCount; ++id) {
+        if (id == kPassSearchPairs || id == kPassFilterPairs) continue;
+        if (id == kPassFilterTiles && (provider.filters & gpu::kFiltersByTile) == 0) continue;
+        rows.push_back(rowOf(id, passOf(static_cast<PassId>(id)).name, provider));
+    }
+    for (const Filter filter : {Filter::Pcss, Filter::PcssShared}) {
+        if ((provider.filters & only(filter)) == 0) continue;
+        for (std::uint32_t kind = 1; kind <= gpu::kShadowViewsKinds; ++kind) {
+            rows.push_back(rowOf(kPassFilterPairs, filter, kind));
+            if (filter == Filter::PcssShared) rows.push_back(rowOf(kPassSearchPairs, filter, kind));
+        }
+    }
+    return rows;
+}
+
 // All pipelines of one provider and width, in the order in which they are created.
 std::vector<Row> rowsOf(const Device& device, const Provider& provider, std::uint32_t lanes) {
     capture.captured.clear();
@@ -163,45 +202,42 @@ std::vector<Row> rowsOf(const Device& device, const Provider& provider, std::uin
     settings.filters = provider.filters;
     settings.pcfRadius = provider.pcfRadius;
     if (const Result made = context->prepare(settings); !made) throw GpuError(made.message());
+    std::vector<Row> rows = libraryRows(provider);
+    ShadowSettings byPixel = settings;
+    byPixel.lightLists = LightLists::Pixel;
+    if (const Result made = context->prepare(byPixel); !made) throw GpuError(made.message());
+    rows.push_back({kPassFindLightsApproximate, "find_lights_approximate, lists by pixel"});
     using enum renderer::LightingKind;
     renderer::LightingPipelines lighting(device, *context);
     for (const renderer::LightingKind kind : {Deferred, Evaluate, Inline, Unshadowed}) lighting.get(kind, settings);
     // The reference renderer's inline pipeline as it is measured: without the way out for tiles that got no list space.
     lighting.get(Inline, settings, {.walksMasks = false});
-    std::vector<std::string> names;
-    for (std::uint32_t id = 0; id < kPassCount; ++id) names.emplace_back(passOf(static_cast<PassId>(id)).name);
-    for (const char* name : {"lighting_deferred", "lighting_evaluate", "lighting_inline", "lighting_unshadowed",
-                             "lighting_inline, lists alone"})
-        names.emplace_back(name);
-    if (names.size() != capture.captured.size())
+    for (std::size_t i = 0; i < std::size(kLightingNames); ++i)
+        rows.push_back(rowOf(kPassCount + i, kLightingNames[i], provider));
+    if (rows.size() != capture.captured.size())
         throw GpuError(
-            fmt::format("{} pipelines were made where {} were expected.", capture.captured.size(), names.size()));
-    std::vector<Row> rows;
-    for (std::size_t i = 0; i < names.size(); ++i) rows.push_back({names[i], lanes, capture.captured[i]});
-    return rows;
-}
-
-bool evaluatesShadows(const std::string& pipeline) {
-    return pipeline == "generate_shadows" || pipeline == "lighting_evaluate" || pipeline.starts_with("lighting_inline");
-}
-
-// Every pipeline once: those that evaluate shadows for each provider, by pipeline, in the order of execution.
-std::vector<Row> rowsOf(const Device& device, std::uint32_t lanes) {
-    std::vector<std::vector<Row>> byProvider;
-    for (const Provider& provider : kProviders) byProvider.push_back(rowsOf(device, provider, lanes));
-    std::vector<Row> rows;
-    for (std::size_t i = 0; i < byProvider.front().size(); ++i) {
-        const Row& row = byProvider.front()[i];
-        if (!evaluatesShadows(row.name)) {
-            rows.push_back(row);
-            continue;
-        }
-        for (std::size_t p = 0; p < byProvider.size(); ++p) {
-            rows.push_back(byProvider[p][i]);
-            rows.back().name += fmt::format(" ({})", kProviders[p].name);
-        }
+            fmt::format("{} pipelines were made where {} were expected.", capture.captured.size(), rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        rows[i].lanes = lanes;
+        rows[i].statistics = capture.captured[i];
     }
     return rows;
+}
+
+// Every pipeline once, in the order of execution. Of the same name, that of the last provider.
+std::vector<Row> rowsOf(const Device& device, std::uint32_t lanes) {
+    std::vector<Row> all;
+    for (const Provider& provider : kProviders) {
+        for (const Row& row : rowsOf(device, provider, lanes)) {
+            const auto same = std::ranges::find(all, row.name, &Row::name);
+            if (same == all.end())
+                all.push_back(row);
+            else
+                *same = row;
+        }
+    }
+    std::ranges::stable_sort(all, {}, &Row::place);
+    return all;
 }
 
 // --- Occupancy -------------------------------------------------------------------------------------------------------

@@ -93,13 +93,25 @@ renderer::RendererDesc descOf(const Session& session, const std::vector<std::str
     return desc;
 }
 
-std::vector<Variant> measure(const Session& session, const BenchOptions& options) {
+// What the paper's lists would hold: one more frame.
+FrameStatistics countByPixel(const Session& session, PairedFrames& frames, double time) {
+    renderer::FrameSettings settings = settingsOf(session, {});
+    settings.shadows.lightLists = LightLists::Pixel;
+    Variant counted("deferred");
+    frames.submit(settings, renderer::ShadowMode::Deferred, session.camera(), time, &counted);
+    frames.finish();
+    return counted.last().report.statistics;
+}
+
+void measure(const BenchOptions& options, Measurement& out) {
+    const Session& session = out.session;
     renderer::Renderer renderer(session.device(), session.scene(), descOf(session, options.variants));
     for (const std::string& name : options.variants) {  // no round shall make pipelines
         renderer.set(settingsOf(session, wayOf(name)));
         renderer.prepare(wayOf(name).mode);
     }
-    std::vector<Variant> variants(options.variants.begin(), options.variants.end());
+    std::vector<Variant>& variants = out.variants;
+    variants = {options.variants.begin(), options.variants.end()};
     const std::uint32_t rounds = options.warmUp + options.frames;
     FrameProgress progress(std::uint64_t{rounds} * variants.size());
     PairedFrames frames(renderer);
@@ -114,7 +126,9 @@ std::vector<Variant> measure(const Session& session, const BenchOptions& options
             progress.step();
         }
     frames.finish();
-    return variants;
+    if (options.preset.empty()) return;
+    const double time = frameTime(options.settings.time, frame, options.framesPerSecond);
+    out.byPixel = countByPixel(session, frames, time);
 }
 
 // Inline shading is measured without its way out of full lists, so that it is as fast as it can be.
@@ -134,7 +148,8 @@ void benchWithin(const renderer::VulkanInstance& instance, const BenchOptions& o
     exportLights(session, options.lights, options.settings.time, {});
     if (session.device().timestampPeriodNs() == 0.0)
         throw std::runtime_error(fmt::format("'{}' has no timestamps to measure with.", session.device().info().name));
-    Measurement measured = {session, measure(session, options), std::nullopt, options.warmUp, options.framesPerSecond};
+    Measurement measured = {session, {}, std::nullopt, options.warmUp, options.framesPerSecond, std::nullopt};
+    measure(options, measured);
     checkLists(measured.variants);
     if (options.floor) measured.rates = renderer::measureDeviceRates(session.device());
     if (!options.json.empty()) writeMeasurement(measured, options.preset, options.json);

@@ -10,22 +10,26 @@
 namespace gnomon::app {
 namespace {
 
-// The shadow filter's samples per pixel and light: what its shader does (src/visibility). Lights take turns with the
+// The shadow filters' samples per pixel and light: what their shaders do (src/visibility). Lights take turns with the
 // filters, and those with PCSS take turns with the presets, so each counts by its share.
-FilterSamples samplesOf(const renderer::FrameSettings& settings) {
-    FilterSamples samples;
+FilterNeeds filterNeedsOf(const renderer::FrameSettings& settings) {
+    FilterNeeds needs;
     const double share = 1.0 / static_cast<double>(settings.filters.size());
     const ShadowSettings& shadows = settings.shadows;
     for (const Filter filter : settings.filters) {
-        if (filter == Filter::Hard) samples.fetches += share;
-        if (filter == Filter::Pcf) samples.gathers += share * (shadows.pcfRadius + 1.0) * (shadows.pcfRadius + 1.0);
+        const bool shared = filter == Filter::PcssShared;
+        FilterWork& work = shared ? needs.byQuad : isSoft(filter) ? needs.byPixel : needs.byTile;
+        work.share += share;
+        if (filter == Filter::Hard) work.always.fetches += share;
+        if (filter == Filter::Pcf) work.always.gathers += share * (shadows.pcfRadius + 1.0) * (shadows.pcfRadius + 1.0);
         if (!isSoft(filter)) continue;
+        const double ofPreset = share / shadows.pcssPresetCount;
         for (std::uint32_t i = 0; i < shadows.pcssPresetCount; ++i) {
-            samples.scatteredGathers += share * shadows.pcssPresets[i].searchTaps / shadows.pcssPresetCount;
-            samples.scatteredIfMixed += share * shadows.pcssPresets[i].filterTaps / shadows.pcssPresetCount;
+            work.always.scatteredGathers += ofPreset * shadows.pcssPresets[i].searchTaps / (shared ? 4.0 : 1.0);
+            work.ifMixed.scatteredGathers += ofPreset * shadows.pcssPresets[i].filterTaps;
         }
     }
-    return samples;
+    return needs;
 }
 
 FrameCounts countsOf(const Session& session, const renderer::FrameReport& report) {
@@ -38,6 +42,7 @@ FrameCounts countsOf(const Session& session, const renderer::FrameReport& report
     counts.earlyCastingEntries = s.earlyCastingEntries;
     counts.finalEntries = s.finalEntries;
     counts.slots = s.finalSlotEntries;
+    counts.listsByFroxel = session.rendererDesc().frame.shadows.lightLists == LightLists::Froxel;
     counts.slotBytes = 8.0 * session.rendererDesc().frame.shadows.visibilityBits;  // 64 pixels
     return counts;
 }
@@ -52,7 +57,8 @@ std::optional<Floor> floorOf(const Measurement& measured, const Variant& variant
     // Inline shading stores no slots, but has the same mixed tiles to filter.
     if (const Variant* deferred = find(measured.variants, "deferred"))
         counts.slots = deferred->last().report.statistics.finalSlotEntries;
-    const std::optional<PassNeed> need = needOf(pass.name, counts, samplesOf(measured.session.rendererDesc().frame));
+    const std::optional<PassNeed> need =
+        needOf(pass.name, counts, filterNeedsOf(measured.session.rendererDesc().frame));
     if (!need) return std::nullopt;
     return Floor{*need, floorMs(*need, *measured.rates)};
 }
@@ -144,6 +150,11 @@ double medianRatio(const Variant& a, const Variant& b) {
     return spreadOf(ratios).median;
 }
 
+const char* listsName(const Session& session) {
+    const bool froxel = session.rendererDesc().frame.shadows.lightLists == LightLists::Froxel;
+    return froxel ? "by froxel" : "by pixel";
+}
+
 static void printRates(const renderer::DeviceRates& rates) {
     fmt::print("Copies {:.0f} GB/s (read and written)\n", rates.bytesPerSecond * 1e-9);
     const auto print = [](const char* what, const renderer::SampleRates& of) {
@@ -159,10 +170,11 @@ void printBench(const Measurement& measured) {
     const FrameStatistics& s = variants.front().last().report.statistics;
     const renderer::FrameSettings& desc = session.rendererDesc().frame;
     fmt::print("{}\nDriver {}; commit {}\n", session.device().info().name, session.device().info().driver, commit());
-    fmt::print("{}, {}x{}, filter {}, {} lights, {} visible; per tile {:.2f} lights, {:.2f} shadowed; {} frames each\n",
-               session.settings().scene, desc.widthPx, desc.heightPx, session.settings().filter, s.lights.given,
-               s.lights.visible, meanPerTile(s.earlyEntries, s), meanPerTile(s.earlyCastingEntries, s),
-               variants.front().compute().size());
+    fmt::print(
+        "{}, {}x{}, filter {}, {} lights, {} visible; per tile {} {:.2f} lights, {:.2f} shadowed; {} frames each\n",
+        session.settings().scene, desc.widthPx, desc.heightPx, session.settings().filter, s.lights.given,
+        s.lights.visible, listsName(session), meanPerTile(s.earlyEntries, s), meanPerTile(s.earlyCastingEntries, s),
+        variants.front().compute().size());
     if (measured.rates) printRates(*measured.rates);
     for (const Variant& variant : variants) printVariant(measured, variant);
     fmt::print("\n");
@@ -196,6 +208,8 @@ Json describeBench(const Measurement& measured) {
     out["lightsVisible"] = s.lights.visible;
     out["meanLightsPerTile"] = meanPerTile(s.earlyEntries, s);
     out["meanShadowedLightsPerTile"] = meanPerTile(s.earlyCastingEntries, s);
+    if (measured.byPixel)
+        out["meanShadowedLightsPerTileByPixel"] = meanPerTile(measured.byPixel->earlyCastingEntries, *measured.byPixel);
     out["warmUp"] = measured.warmUp;
     out["frames"] = variants.front().compute().size();
     out["framesPerSecond"] = measured.framesPerSecond;

@@ -42,6 +42,8 @@ struct Measurement {
     std::optional<renderer::DeviceRates> rates;  ///< where floors were asked for
     std::uint32_t warmUp = 0;                    ///< rounds that did not count
     double framesPerSecond = 0.0;                ///< of the animations' time; 0: they stood
+    /// Of one more frame with LightLists::Pixel, which the paper counts by. For presets alone.
+    std::optional<FrameStatistics> byPixel;
 };
 
 /// Null where that variant was not measured.
@@ -49,6 +51,9 @@ const Variant* find(const std::vector<Variant>& variants, const std::string& nam
 
 /// Median over the rounds of compute time of `a` over that of `b`, frame against neighbouring frame.
 double medianRatio(const Variant& a, const Variant& b);
+
+/// "by froxel" or "by pixel": which lights the lists hold that were measured.
+const char* listsName(const Session& session);
 
 void printBench(const Measurement& measured);
 Json describeBench(const Measurement& measured);

@@ -53,6 +53,7 @@ vec3 illuminate(uvec2 pixel, Receiver receiver) {
     TileLights tile = tileLightsOf(gl_WorkGroupID.xy);
     for (uint i = 0u; i < tile.count; ++i) {
         uint entry = tileLightEntry(tile, i);
+        if (isAllUnlit(entry)) continue;  // its light is dark all over the tile, or reaches no pixel of it
         GpuLight light = lights[finalLightIndex(entry)];
         if (!lightReaches(light, receiver.positionWs, receiver.mask, toLight)) continue;
         sum += lightFrom(light, receiver, toLight) * storedVisibility(entry, pixel);

@@ -193,7 +193,8 @@ void Host::renderFrame(std::uint64_t number) {
     timeline->end(commands, row);
 
     // 11. The hierarchical depth, and phases 2 and 3: which lights reach which tile. No shadowmap is needed yet, so an
-    // engine may run these on an async compute queue while the next step draws.
+    // engine may run these on an async compute queue while the next step draws. Phase 3 has something to do with
+    // LightLists::Pixel alone, but is recorded always: it makes the lists visible.
     view->recordHierarchicalDepth(commands);
     view->recordFindLightsApproximate(commands);
     view->recordFindLightsAccurate(commands);

@@ -68,7 +68,7 @@ struct Light {
     bool casts = true;
     /// How its shadowmaps are read; one of ShadowSettings::filters.
     Filter filter = Filter::Pcss;
-    /// Filter::Pcss: which of ShadowSettings::pcssPresets.
+    /// Filter::Pcss and PcssShared: which of ShadowSettings::pcssPresets.
     std::uint8_t pcssPreset = 0;
 };
 

@@ -35,8 +35,8 @@ constexpr FilterSet only(Filter filter) noexcept {
 inline constexpr FilterSet kAllBuiltInFilters =
     only(Filter::Hard) | only(Filter::Pcf) | only(Filter::Pcss) | only(Filter::PcssShared);
 
-/// Taps of Filter::Pcss and Filter::PcssShared, each a gather of four texels. A pixel outside of penumbrae takes searchTaps at most, one
-/// inside also filterTaps.
+/// Taps of Filter::Pcss and Filter::PcssShared, each a gather of four texels. A pixel outside of penumbrae takes
+/// searchTaps at most, one inside also filterTaps. With PcssShared 2x2 pixels take searchTaps once.
 struct PcssTaps {
     std::uint32_t searchTaps = 16;  ///< 1 to 64
     std::uint32_t filterTaps = 24;  ///< 1 to 64
@@ -72,7 +72,7 @@ enum class ListReservation : std::uint8_t {
     /// By the phase that writes the lists, as much as the exact count. With LightLists::Froxel it is the same as
     /// Approximate; with LightLists::Pixel it takes one atomic per tile.
     Accurate,
-    Fixed,        ///< debugging: fixedListEntriesPerTile for every tile, at predictable addresses
+    Fixed,  ///< debugging: fixedListEntriesPerTile for every tile, at predictable addresses
 };
 
 /// Plain values with working defaults; equal values have equal pipelines.
@@ -84,7 +84,7 @@ struct ShadowSettings {
     /// Light::pcssPreset chooses among the first pcssPresetCount of them.
     std::array<PcssTaps, kMaxPcssPresets> pcssPresets = {kPcssMedium, kPcssLow, kPcssHigh, kPcssMedium};
     std::uint32_t pcssPresetCount = 1;  ///< 1 to kMaxPcssPresets; one is fastest
-    /// Turns the sample pattern of Filter::Pcss from frame to frame, for hosts that accumulate frames.
+    /// Turns the sample pattern of the soft filters from frame to frame, for hosts that accumulate frames.
     bool patternPerFrame = false;
     /// View::recordShadowBounds() will be called in this frame. Bounds are kept from frame to frame while
     /// ShadowView::changed is false; set that true once after a recorded frame that was never submitted.

@@ -12,7 +12,7 @@
 //     view.beginFrame(frame);                          // checks, and fills mapped memory
 //     view.recordHierarchicalDepth(commands);          // needs the host's depth
 //     view.recordFindLightsApproximate(commands);      // phase 2 \  need no shadowmap: may run on an async compute
-//     view.recordFindLightsAccurate(commands);         // phase 3 /  queue while shadowmaps are drawn
+//     view.recordFindLightsAccurate(commands);         // phase 3 /  queue while shadowmaps are drawn (LightLists)
 //     view.recordShadowBounds(commands);               // optional, needs the shadowmaps
 //     view.recordGenerateShadows(commands);            // phase 4, needs the shadowmaps
 //     ... the host's lighting, with listsSet(): see src/shading/tile_lights.glsl ...
@@ -140,11 +140,11 @@ struct FrameStatistics {
     // Only with ViewDesc::statistics, else 0. Sums over all shadow tiles; an entry is one light of one tile.
     std::uint32_t tilesWithGeometry = 0;
     std::uint32_t approximateEntries = 0;   ///< after phase 2
-    std::uint32_t earlyEntries = 0;         ///< after phase 3
+    std::uint32_t earlyEntries = 0;         ///< in the lists before phase 4: see ShadowSettings::lightLists
     std::uint32_t earlyCastingEntries = 0;  ///< of these: of lights that cast
-    std::uint32_t finalEntries = 0;         ///< after phase 4, which drops lights that reach no lit pixel
+    std::uint32_t finalEntries = 0;         ///< after phase 4, without lights that are dark all over their tile
     std::uint32_t finalSlotEntries = 0;     ///< of these: with a visibility slot
-    std::uint32_t maxLightsInTile = 0;      ///< after phase 3
+    std::uint32_t maxLightsInTile = 0;      ///< before phase 4
 };
 
 /// The buffers of one camera. Not thread safe; different views are independent, and record calls of one frame may go to
@@ -178,17 +178,17 @@ public:
     /// input; the frame must then not be recorded. `report`, if given: what phase 1 kept and dropped.
     Result beginFrame(const FrameDesc& frame, PrepareReport* report = nullptr) noexcept;
 
-    // After a beginFrame() that succeeded. Each records one pass with its barriers, debug label and timeline row, and
+    // After a beginFrame() that succeeded. Each records its passes, with barriers, debug labels and timeline rows, and
     // leaves its own compute pipeline and descriptor sets bound. On one queue the library's buffers need no barrier by
     // the host, before or after. Across queues a semaphore is enough. The lists exist once per view: the next frame's
     // recordHierarchicalDepth() must wait for this frame's recordEndFrame().
     void recordHierarchicalDepth(VkCommandBuffer commands) noexcept;
     void recordFindLightsApproximate(VkCommandBuffer commands) noexcept;
-    /// Afterwards the early lists are visible to all shaders. A host that evaluates every shadow while lighting may
-    /// leave out phase 4.
+    /// Afterwards the early lists are visible to all shaders: record it with LightLists::Froxel, too, where it has no
+    /// pass. A host that evaluates every shadow while lighting may leave out phase 4.
     void recordFindLightsAccurate(VkCommandBuffer commands) noexcept;
     /// Optional, with ShadowSettings::shadowBounds: least and greatest depths of blocks of the atlases, made anew for
-    /// the shadow views that changed. Filter::Pcss then leaves out searches whose result they tell, in phase 4 as in
+    /// the shadow views that changed. Soft filters then leave out searches whose result they tell, in phase 4 as in
     /// the host's own shaders. Not a bit of the result changes. To be recorded after the shadowmaps are drawn;
     /// afterwards visible to all shaders.
     void recordShadowBounds(VkCommandBuffer commands) noexcept;

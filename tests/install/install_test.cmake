@@ -105,7 +105,7 @@ endfunction()
 function(check_host_provider)
     set(shaders ${prefix}/share/gnomon/shaders)
     run(${GLSLC} --target-env=vulkan1.2 -I${shaders} -I${SOURCE_DIR}/tests/gpu/tiled_shadows/host_provider
-        -DGNOMON_HOST_PROVIDER -o ${root}/phase4.spv ${shaders}/generate_shadows/generate_shadows.comp)
+        -DGNOMON_HOST_PROVIDER -o ${root}/phase4.spv ${shaders}/generate_shadows/filter_pairs.comp)
 endfunction()
 
 # Runs a script that must fail with a sentence.

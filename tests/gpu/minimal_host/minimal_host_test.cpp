@@ -404,8 +404,8 @@ void expectMemory(const Outcome& run) {
 // Rows of the host and of the library stand in one table, in the order of the paper's figure 1.
 void expectTimeline(const Outcome& run) {
     std::size_t at = run.output.find("\nprepare ");
-    for (const char* row : {"gbuffer", "hierarchical_depth", "find_lights_approximate", "find_lights_accurate",
-                            "shadowmaps", "shadow_bounds", "generate_shadows", "lighting", "lighting_evaluate"}) {
+    for (const char* row : {"gbuffer", "hierarchical_depth", "find_lights_approximate", "shadowmaps", "shadow_bounds",
+                            "filter_tiles", "classify_pairs", "filter_pairs", "lighting", "lighting_evaluate"}) {
         const std::size_t next = run.output.find(std::string("\n").append(row).append(" "), at);
         ASSERT_NE(next, std::string::npos) << row << "\n" << run.output;
         at = next;

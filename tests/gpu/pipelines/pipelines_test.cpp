@@ -88,7 +88,7 @@ std::vector<std::uint32_t> sizesOf(const DeviceInfo& info) {
 std::vector<ShadowSettings> filtersOf() {
     std::vector<ShadowSettings> out;
     ShadowSettings settings;
-    for (const FilterSet filters : {only(Filter::Hard), FilterSet{0}, kAllBuiltInFilters}) {
+    for (const FilterSet filters : {only(Filter::Hard), FilterSet{0}, only(Filter::PcssShared), kAllBuiltInFilters}) {
         settings.filters = filters;
         out.push_back(settings);
     }
@@ -98,7 +98,8 @@ std::vector<ShadowSettings> filtersOf() {
     return out;
 }
 
-// Filters and reservations crossed; the host's pyramid, which one pass alone looks at, once.
+// Filters and reservations crossed, and lists with reservations; the host's pyramid, which one pass alone looks at,
+// once.
 std::vector<ShadowSettings> variantsOf() {
     std::vector<ShadowSettings> out;
     for (ShadowSettings settings : filtersOf()) {
@@ -108,6 +109,13 @@ std::vector<ShadowSettings> variantsOf() {
             settings.fixedListEntriesPerTile = way == ListReservation::Fixed ? 16 : 0;
             out.push_back(settings);
         }
+    }
+    for (const ListReservation way :
+         {ListReservation::Approximate, ListReservation::Accurate, ListReservation::Fixed}) {
+        ShadowSettings& settings = out.emplace_back();
+        settings.lightLists = LightLists::Pixel;
+        settings.listReservation = way;
+        settings.fixedListEntriesPerTile = 16;
     }
     out.emplace_back().hostDepthPyramid = true;
     return out;
@@ -149,6 +157,7 @@ TEST_F(PipelinesTest, LightingOfTheRenderer) {
                 // One radius is unrolled as another is: in a quick run the widest must do.
                 const bool widest = settings.pcfRadius == gpu::kMaxPcfRadius;
                 if (quick && settings.filters == only(Filter::Pcf) && !widest) continue;
+                if (quick && settings.filters == only(Filter::PcssShared)) continue;  // the next one has its code
                 // Pictures of floats differ in what the last line writes: the smallest pipelines must do.
                 if (settings.filters == FilterSet{0}) {
                     for (const LightingKind kind : {Deferred, Evaluate, Inline})

@@ -1,6 +1,8 @@
 // What the program draws: time, soft shadows, small pools, validation.
 
 #include <fstream>
+#include <map>
+#include <string>
 
 #include "picture/picture.h"
 #include "unit/app/program.h"
@@ -44,15 +46,15 @@ TEST_F(Rendering, RendersAndDescribesAFrame) {
     EXPECT_GE(json["memory"]["library"]["lights"]["copies"], 2) << "one for each frame in flight";
     EXPECT_EQ(json["memory"]["library"]["visibility"]["copies"], 1);
     EXPECT_GT(json["memory"]["library"]["visibility"]["bytes"], 0);
+    std::map<std::string, std::string> kinds;
     for (const nlohmann::json& pass : json["passes"]) {
-        if (pass["name"] == "gbuffer") {
-            EXPECT_EQ(pass["kind"], "drawing");
-        }
-        if (pass["name"] == "generate_shadows") {
-            EXPECT_EQ(pass["kind"], "compute");
-        }
+        kinds[pass["name"]] = pass["kind"];
         EXPECT_FALSE(pass.contains("drawing"));
     }
+    EXPECT_EQ(kinds["gbuffer"], "drawing");
+    EXPECT_EQ(kinds["classify_pairs"], "compute");
+    EXPECT_EQ(kinds["filter_pairs"], "compute");
+    EXPECT_FALSE(kinds.contains("filter_tiles")) << "pcss has nothing for it";
 }
 
 TEST_F(Rendering, TimePasses) {

@@ -39,8 +39,8 @@ TEST(Floor, IsTheLongerOfMemoryAndTexture) {
     EXPECT_DOUBLE_EQ(floorMs({400.0, 10.0, 5.0, 3.0}, rates), 4000.0);
 }
 
-// One tile wide open: by hand.
-TEST(Floor, OfOneTileByHand) {
+// One tile wide open. Two casting lights of six; half of the casting lights have each of two filters.
+FrameCounts oneTile() {
     FrameCounts counts = frameCounts(8, 8);
     counts.tilesWithGeometry = 1;
     counts.visibleLights = 2;
@@ -49,33 +49,99 @@ TEST(Floor, OfOneTileByHand) {
     counts.earlyCastingEntries = 2;
     counts.finalEntries = 5;
     counts.slots = 1;
-    const FilterSamples filter = {1.0, 4.0, 3.0, 9.0};
+    return counts;
+}
 
-    const PassNeed hierarchical = *needOf("hierarchical_depth", counts, filter);
+constexpr double kReceivers = 64 * (4 + 4 + 2), kLights = 2 * 96, kViews = 3 * 208, kEarlyList = 8;
+
+TEST(Floor, OfOneTileByHand) {
+    const FrameCounts counts = oneTile();
+    const PassNeed hierarchical = *needOf("hierarchical_depth", counts, {});
     EXPECT_DOUBLE_EQ(hierarchical.bytes, 64 * 4 + 8);
     EXPECT_DOUBLE_EQ(hierarchical.fetches, 64);
 
-    const PassNeed generate = *needOf("generate_shadows", counts, filter);
-    const double receivers = 64 * (4 + 4 + 2), lights = 2 * 96, words = 3 * 4, early = 8, views = 3 * 208;
-    EXPECT_DOUBLE_EQ(generate.bytes, receivers + lights + words + early + views + 2 * 64 * 4 + 5 * 4 + 64);
-    EXPECT_DOUBLE_EQ(generate.fetches, 3 * 64 + 2 * 64);
-    EXPECT_DOUBLE_EQ(generate.gathers, 2 * 64 * 4);
-    EXPECT_DOUBLE_EQ(generate.scatteredGathers, 2 * 64 * 3 + 64 * 9);
-
-    const PassNeed lighting = *needOf("lighting", counts, filter);
-    EXPECT_DOUBLE_EQ(lighting.bytes, 64 * (4 + 2) + 64 * (16 + 8) + 2 * 32 + lights + 2 * 4 + 5 * 4 + 64);
+    const PassNeed lighting = *needOf("lighting", counts, {});
+    EXPECT_DOUBLE_EQ(lighting.bytes, 64 * (4 + 2) + 64 * (16 + 8) + 2 * 32 + kLights + 2 * 4 + 5 * 4 + 64);
     EXPECT_DOUBLE_EQ(lighting.fetches, 6 * 64);
     EXPECT_DOUBLE_EQ(lighting.gathers, 0);
     EXPECT_DOUBLE_EQ(lighting.scatteredGathers, 0);
+}
 
-    const PassNeed inlined = *needOf("lighting_inline", counts, filter);
-    EXPECT_DOUBLE_EQ(inlined.gathers, generate.gathers);
-    EXPECT_DOUBLE_EQ(inlined.scatteredGathers, generate.scatteredGathers);
-    EXPECT_DOUBLE_EQ(inlined.fetches, 64 * (3 + 4) + 2 * 64);
+// The phase that writes the lists writes four words of every tile, and of every entry its index and its tile.
+TEST(Floor, OfTheListsByHand) {
+    FrameCounts counts = oneTile();
+    const double masks = 132 + 4 * 2048, ranges = 8, groupMasks = 132, lists = 4 * 4 + 2 * kEarlyList;
+    EXPECT_DOUBLE_EQ(needOf("find_lights_approximate", counts, {})->bytes,
+                     ranges + masks + kLights + groupMasks + lists);
+    counts.listsByFroxel = false;
+    EXPECT_DOUBLE_EQ(needOf("find_lights_approximate", counts, {})->bytes, ranges + masks + kLights + groupMasks + 4);
+    EXPECT_DOUBLE_EQ(needOf("find_lights_accurate", counts, {})->bytes,
+                     kReceivers + ranges + masks + groupMasks + kLights + lists);
+}
+
+TEST(Floor, OfFiltersByTileByHand) {
+    FilterNeeds filters;
+    filters.byTile = {1.0, {1.0, 4.0, 0.0}, {}};
+    const PassNeed tiles = *needOf("filter_tiles", oneTile(), filters);
+    const double texels = 2 * 64 * 4, results = 6 * 4 + 64;
+    EXPECT_DOUBLE_EQ(tiles.bytes, kReceivers + kLights + 2 * 4 + kEarlyList + kViews + texels + results);
+    EXPECT_DOUBLE_EQ(tiles.fetches, 3 * 64 + 2 * 64);
+    EXPECT_DOUBLE_EQ(tiles.gathers, 2 * 64 * 4);
+    // With tiles, lights without shadows are theirs: nothing is left to be queued.
+    EXPECT_DOUBLE_EQ(needOf("classify_pairs", oneTile(), filters)->bytes, kLights + 2 * 4 + 2 * kEarlyList);
+}
+
+TEST(Floor, OfFiltersByPixelByHand) {
+    FilterNeeds filters;
+    filters.byPixel = {1.0, {0.0, 0.0, 3.0}, {0.0, 0.0, 9.0}};
+    EXPECT_DOUBLE_EQ(needOf("classify_pairs", oneTile(), filters)->bytes,
+                     kLights + 2 * 4 + 2 * kEarlyList + 4 * (2 + 4));  // two pairs are queued, four lights are lit
+
+    const PassNeed pairs = *needOf("filter_pairs", oneTile(), filters);
+    const double queued = 2 * (4 + 8.0 / 3), texels = 2 * 64 * 4, results = 2 * 4 + 64;
+    EXPECT_DOUBLE_EQ(pairs.bytes, kReceivers + kLights + queued + kViews + texels + results);
+    EXPECT_DOUBLE_EQ(pairs.fetches, 3 * 64);
+    EXPECT_DOUBLE_EQ(pairs.gathers, 0);
+    EXPECT_DOUBLE_EQ(pairs.scatteredGathers, 2 * 64 * 3 + 64 * 9);
+
+    const PassNeed inlined = *needOf("lighting_inline", oneTile(), filters);
+    EXPECT_DOUBLE_EQ(inlined.scatteredGathers, pairs.scatteredGathers);
+    EXPECT_DOUBLE_EQ(inlined.fetches, 64 * (3 + 4));
+}
+
+TEST(Floor, OfFiltersByQuadByHand) {
+    FilterNeeds filters;
+    filters.byQuad = {1.0, {0.0, 0.0, 3.0}, {0.0, 0.0, 9.0}};
+    const PassNeed search = *needOf("search_pairs", oneTile(), filters);
+    const double perPair = 4 + 8.0 / 3, texels = 64 * 4, found = 16 * 2;
+    EXPECT_DOUBLE_EQ(search.bytes,
+                     kReceivers + kLights + 2 * perPair + kViews + 2 * texels + 2 * 4 + (4 + found));  // one is mixed
+    EXPECT_DOUBLE_EQ(search.scatteredGathers, 2 * 64 * 3);
+
+    const PassNeed filter = *needOf("filter_pairs", oneTile(), filters);
+    EXPECT_DOUBLE_EQ(filter.bytes, kReceivers + kLights + perPair + kViews + texels + found + 4 + 64);
+    EXPECT_DOUBLE_EQ(filter.scatteredGathers, 64 * 9);
+
+    // While lighting, every pixel searches for its quad.
+    EXPECT_DOUBLE_EQ(needOf("lighting_inline", oneTile(), filters)->scatteredGathers, 4 * 2 * 64 * 3 + 64 * 9);
+}
+
+// Filters take turns: each is in its own pass, and inline shading has them all.
+TEST(Floor, OfSeveralFiltersIsTheSum) {
+    FilterNeeds filters;
+    filters.byTile = {0.5, {0.5, 2.0, 0.0}, {}};
+    filters.byPixel = {0.25, {0.0, 0.0, 4.0}, {0.0, 0.0, 8.0}};
+    filters.byQuad = {0.25, {0.0, 0.0, 1.0}, {0.0, 0.0, 6.0}};
+    const auto needed = [&](const char* pass) { return *needOf(pass, oneTile(), filters); };
+    EXPECT_DOUBLE_EQ(needed("filter_tiles").gathers, 2 * 64 * 2.0);
+    EXPECT_DOUBLE_EQ(needed("search_pairs").scatteredGathers, 2 * 64 * 1.0);
+    EXPECT_DOUBLE_EQ(needed("filter_pairs").scatteredGathers, 2 * 64 * 4.0 + 64 * (8 + 6));
+    EXPECT_DOUBLE_EQ(needed("lighting_inline").gathers, 2 * 64 * 2.0);
+    EXPECT_DOUBLE_EQ(needed("lighting_inline").scatteredGathers, 2 * 64 * (4 + 4 * 1) + 64 * (8 + 6));
 }
 
 TEST(Floor, IsNotGuessed) {
-    for (const char* pass : {"lighting_evaluate", "gather_statistics", "gbuffer", ""})
+    for (const char* pass : {"lighting_evaluate", "gather_statistics", "generate_shadows", "gbuffer", ""})
         EXPECT_FALSE(needOf(pass, frameCounts(8, 8), {}).has_value()) << pass;
 }
 

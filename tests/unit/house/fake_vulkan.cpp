@@ -123,6 +123,13 @@ VKAPI_ATTR VkResult VKAPI_CALL createShaderModule(VkDevice, const VkShaderModule
     return result;
 }
 
+VKAPI_ATTR VkResult VKAPI_CALL createBuffer(VkDevice, const VkBufferCreateInfo* info, const VkAllocationCallbacks*,
+                                            VkBuffer* out) {
+    const VkResult result = make(out);
+    if (result == VK_SUCCESS) current->usages[*out] = info->usage;
+    return result;
+}
+
 FakeVulkan::Pipeline describe(const VkPipelineShaderStageCreateInfo& stage) {
     FakeVulkan::Pipeline out;
     out.stageFlags = stage.flags;
@@ -188,7 +195,7 @@ PFN_vkVoidFunction lookUp(const char* name) {
         {"vkDestroyQueryPool", as(destroy<VkQueryPool>)},
         {"vkDestroySampler", as(destroy<VkSampler>)},
         {"vkDestroyShaderModule", as(destroy<VkShaderModule>)},
-        {"vkCreateBuffer", as(create<VkBufferCreateInfo, VkBuffer>)},
+        {"vkCreateBuffer", as(createBuffer)},
         {"vkDestroyBuffer", as(destroy<VkBuffer>)},
         {"vkGetBufferMemoryRequirements", as(getRequirements<VkBuffer>)},
         {"vkBindBufferMemory", as(bindMemory<VkBuffer>)},

@@ -54,6 +54,7 @@ public:
     };
     std::vector<SetLayout> setLayouts;
     std::map<VkShaderModule, std::size_t> modules;  // bytes of all that were made
+    std::map<VkBuffer, VkBufferUsageFlags> usages;  // likewise
     std::vector<Pipeline> pipelines;
     std::map<VkDeviceMemory, std::vector<std::byte>> memory;  // all that was allocated and not freed
     std::uint32_t made = 0, destroyed = 0;                    // memory included

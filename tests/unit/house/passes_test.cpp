@@ -10,6 +10,7 @@
 #include "core/passes.h"
 #include "core/view_buffers.h"
 #include "gpu_interface/numbers.h"
+#include "unit/house/fake_vulkan.h"
 #include "unit/house/reflection.h"
 
 namespace gnomon::house {
@@ -17,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace gpu;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
 // A declaration that can be changed.
@@ -62,8 +64,15 @@ const ViewBuffer* bufferAt(std::uint32_t set, std::uint32_t binding) {
     return nullptr;
 }
 
-// What is wrong with this access for what the shader does, or nothing.
-std::string wrongAccess(const PassResource& declared, const ResourceLayout& used) {
+// Whether two declarations may stand side by side: a storage buffer that also holds the command of the dispatch.
+bool mayShareAPlace(Access a, Access b) {
+    if (b == Access::Indirect) std::swap(a, b);
+    return a == Access::Indirect && (b == Access::Read || b == Access::Write);
+}
+
+// What is wrong with this access for what the shader does, or nothing. `twin`: it has a second declaration that may
+// stand beside it.
+std::string wrongAccess(const PassResource& declared, bool twin, const ResourceLayout& used) {
     const ViewBuffer* const buffer = bufferAt(declared.set, declared.binding);
     const bool streamed = buffer != nullptr && buffer->kind == BufferKind::Streamed;
     const bool storage = used.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -76,7 +85,7 @@ std::string wrongAccess(const PassResource& declared, const ResourceLayout& used
                        ? ""
                        : "the shader has no image or sampler there";
         case Access::Indirect:
-            return "the shader uses it";
+            return twin ? "" : "the shader uses it";
         case Access::Streamed:
         case Access::Read:
         case Access::Write:
@@ -98,11 +107,16 @@ std::string differences(const Declared& pass, const ShaderLayout& shader) {
         const std::string place = placeOf(r.set, r.binding) + " is declared " + wordFor(r.access);
         const auto same = [&](const auto& other) { return other.set == r.set && other.binding == r.binding; };
         const auto isUsed = [&](const ResourceLayout& other) { return same(other) && (other.read || other.written); };
-        if (std::any_of(pass.resources.begin(), pass.resources.begin() + static_cast<std::ptrdiff_t>(i), same))
-            say(place + ", and was declared before");
+        bool twin = false;
+        for (std::size_t other = 0; other < pass.resources.size(); ++other) {
+            if (other == i || !same(pass.resources[other])) continue;
+            const bool fits = mayShareAPlace(r.access, pass.resources[other].access);
+            twin = twin || fits;
+            if (!fits && other < i) say(place + ", and was declared before");
+        }
         const auto used = std::ranges::find_if(shader.resources, isUsed);
         if (used != shader.resources.end()) {
-            const std::string wrong = wrongAccess(r, *used);
+            const std::string wrong = wrongAccess(r, twin, *used);
             if (!wrong.empty()) say(place + ", but " + wrong);
         } else if (r.access != Access::Indirect) {
             say(place + ", but the shader does not use it");
@@ -142,7 +156,16 @@ ShaderLayout shaderOf(const Pass& pass) {
     return reflect(shaderFolder() / (std::string(pass.name) + ".spv"));
 }
 
-class Passes : public ::testing::TestWithParam<const Pass*> {};
+class Passes : public ::testing::TestWithParam<const Pass*> {
+protected:
+    // Whether resource i stands beside another of the same place.
+    static bool hasTwin(std::size_t i) {
+        const PassResource& r = GetParam()->resources[i];
+        return std::ranges::count_if(GetParam()->resources, [&](const PassResource& other) {
+                   return other.set == r.set && other.binding == r.binding;
+               }) == 2;
+    }
+};
 
 TEST_P(Passes, DeclareWhatTheirShadersDo) {
     EXPECT_EQ(differences(declaredBy(*GetParam()), shaderOf(*GetParam())), "");
@@ -176,8 +199,12 @@ TEST_P(Passes, AMissingResourceIsTold) {
         Declared pass = declaredBy(*GetParam());
         const PassResource gone = pass.resources[i];
         pass.resources.erase(pass.resources.begin() + static_cast<std::ptrdiff_t>(i));
-        EXPECT_EQ(differences(pass, shader),
-                  pass.name + ": " + placeOf(gone.set, gone.binding) + " is in the shader, but not declared\n");
+        const std::string place = pass.name + ": " + placeOf(gone.set, gone.binding);
+        if (!hasTwin(i)) {
+            EXPECT_EQ(differences(pass, shader), place + " is in the shader, but not declared\n");
+        } else if (gone.access != Access::Indirect) {
+            EXPECT_EQ(differences(pass, shader), place + " is declared Indirect, but the shader uses it\n");
+        }  // Reflection cannot see the dispatch: PassList.DispatchesAreIndirectWhereDeclared.
     }
 }
 
@@ -189,6 +216,7 @@ TEST_P(Passes, AResourceTooManyIsTold) {
         for (const PassResource& more : other->resources) {
             const auto same = [&](const PassResource& r) { return r.set == more.set && r.binding == more.binding; };
             if (std::ranges::any_of(own, same)) continue;
+            if (more.access == Access::Indirect) continue;  // of the dispatch: a shader need not use it
             Declared pass = declaredBy(*GetParam());
             pass.resources.push_back(more);
             EXPECT_EQ(differences(pass, shader), pass.name + ": " + placeOf(more.set, more.binding) + " is declared " +
@@ -211,8 +239,12 @@ TEST_P(Passes, AnotherAccessIsTold) {
             PassResource& r = pass.resources[i];
             if (r.access == access) continue;
             r.access = access;
-            EXPECT_THAT(differences(pass, shader), HasSubstr(pass.name + ": " + placeOf(r.set, r.binding) +
-                                                             " is declared " + wordFor(access) + ", but "));
+            const std::string told = pass.name + ": " + placeOf(r.set, r.binding) + " is declared ";
+            // Of the two, the command may not become a second access by the shader.
+            const bool again = hasTwin(i) && GetParam()->resources[i].access == Access::Indirect;
+            EXPECT_THAT(differences(pass, shader),
+                        AnyOf(HasSubstr(told + wordFor(access) + ", but "),
+                              HasSubstr(again ? told + wordFor(access) + ", and was declared before" : told + "?")));
         }
     }
 }
@@ -270,7 +302,32 @@ TEST(PassList, HasAShaderEachAndEachOnce) {
     }
     EXPECT_THAT(names, ::testing::UnorderedElementsAreArray(files));
     EXPECT_THAT(names, ::testing::ElementsAre("hierarchical_depth", "find_lights_approximate", "find_lights_accurate",
-                                              "shadow_bounds", "generate_shadows", "gather_statistics"));
+                                              "shadow_bounds", "filter_tiles", "classify_pairs", "search_pairs",
+                                              "filter_pairs", "gather_statistics"));
+}
+
+// What a shader does not show: which passes the GPU itself sizes. Recorder::dispatch() asserts that dispatches are
+// indirect where a pass declares it, and only there. The command must lie in a buffer of the view, made for it.
+TEST(PassList, DispatchesAreIndirectWhereDeclared) {
+    FakeVulkan vulkan;
+    std::unique_ptr<Context> context;
+    ASSERT_TRUE(Context::create(vulkan.desc(), context));
+    ViewDesc desc;
+    desc.maxWidthPx = desc.maxHeightPx = 64;
+    std::unique_ptr<View> view;
+    ASSERT_TRUE(View::create(*context, desc, view));
+    std::vector<std::string> indirect;
+    for (const Pass* pass : allPasses()) {
+        for (const PassResource& r : pass->resources) {
+            if (r.access != Access::Indirect) continue;
+            indirect.emplace_back(pass->name);
+            const ViewBuffer* const buffer = bufferAt(r.set, r.binding);
+            ASSERT_NE(buffer, nullptr) << pass->name;
+            EXPECT_STREQ(buffer->name, "pair_queues") << pass->name;
+            EXPECT_NE(vulkan.usages.at(view->buffer(buffer->name)) & VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, 0u);
+        }
+    }
+    EXPECT_THAT(indirect, ::testing::ElementsAre("classify_pairs", "search_pairs", "filter_pairs"));
 }
 
 // Every buffer of the view is used by a pass, and every working buffer is written by one.

@@ -36,7 +36,7 @@ TEST(HouseRules, TreeHolds) {
 TEST(HouseRules, TreeIsReadWhole) {
     const std::set<std::string> paths = projectPaths();
     for (const char* path : {"include/gnomon/scene.h", "src/core/context.cpp", "src/gpu_interface/numbers.h",
-                             "src/generate_shadows/generate_shadows.comp", "reference/prepare.cpp",
+                             "src/generate_shadows/filter_pairs.comp", "reference/prepare.cpp",
                              "renderer/lighting/lighting.comp", "app/main.cpp", "CMakeLists.txt"}) {
         EXPECT_TRUE(paths.contains(path)) << path;
     }
@@ -75,7 +75,7 @@ constexpr Planted kPlanted[] = {
     {"include/gnomon/new.h", "#include \"gpu_interface/numbers.h\"", false},
     {"include/gnomon/new.h", "#include \"vulkan/pass.h\"", false},
     {"include/gnomon/new.h", "#include \"../../src/core/context.h\"", false},
-    {"include/gnomon/new.h", "#include \"generate_shadows.spv.h\"", false},
+    {"include/gnomon/new.h", "#include \"filter_pairs.spv.h\"", false},
     {"include/gnomon/new.h", "#include <glm/glm.hpp>", false},
 
     // gpu_interface stands alone.
@@ -94,7 +94,7 @@ constexpr Planted kPlanted[] = {
     {"src/closeups/new.cpp", "#include \"gnomon/view.h\"", true},
     {"src/closeups/new.cpp", "#include \"vulkan/pass.h\"", true},
     {"src/closeups/new.cpp", "#include \"shadow_bounds/cells.h\"", true},
-    {"src/closeups/new.cpp", "#include \"generate_shadows.spv.h\"", true},
+    {"src/closeups/new.cpp", "#include \"filter_pairs.spv.h\"", true},
     {"src/closeups/new.cpp", "#include \"core/view.h\"", false},
     {"src/closeups/new.cpp", "#include \"../core/passes.h\"", false},
     {"src/closeups/new.cpp", "#include \"src/core/pipelines.h\"", false},
@@ -109,14 +109,14 @@ constexpr Planted kPlanted[] = {
     {"src/closeups/new.cpp", "#include \"reference/prepare.h\"", false},
     {"src/closeups/new.cpp", "#include SOME_MACRO", false},
     {"src/core/new.cpp", "#include \"core/view.h\"", true},
-    {"src/core/new.cpp", "#include \"generate_shadows/generate_shadows.h\"", true},
+    {"src/core/new.cpp", "#include \"generate_shadows/filter_pairs.h\"", true},
     {"src/core/new.cpp", "#include \"prepare/camera.h\"", true},
     {"src/core/new.cpp", "#include \"vulkan/recorder.h\"", true},
     {"src/core/new.cpp", "#include \"renderer/renderer.h\"", false},
     {"src/vulkan/new.cpp", "#include \"vulkan/resources.h\"", true},
     {"src/vulkan/new.cpp", "#include \"gpu_interface/numbers.h\"", true},
     {"src/vulkan/new.cpp", "#include \"core/context.h\"", false},
-    {"src/vulkan/new.cpp", "#include \"generate_shadows/generate_shadows.h\"", false},
+    {"src/vulkan/new.cpp", "#include \"generate_shadows/filter_pairs.h\"", false},
     {"src/vulkan/new.glsl", "#include \"shading/frame.glsl\"", false},
     {"src/prepare/new.cpp", "#include \"prepare/camera.h\"", true},
     {"src/prepare/new.cpp", "#include \"gnomon/prepare.h\"", true},
@@ -146,7 +146,7 @@ constexpr Planted kPlanted[] = {
     {"reference/new.cpp", "#include \"src/prepare/camera.h\"", false},
     {"reference/new.cpp", "#include \"shadow_bounds/cells.h\"", false},
     {"reference/new.cpp", "#include \"core/settings.h\"", false},
-    {"reference/new.cpp", "#include \"generate_shadows.spv.h\"", false},
+    {"reference/new.cpp", "#include \"filter_pairs.spv.h\"", false},
     {"reference/new.cpp", "#include \"renderer/renderer.h\"", false},
     {"reference/new.cpp", "#include \"scene/scene.h\"", false},
     {"reference/new.cpp", "#include <vulkan/vulkan.h>", false},

@@ -71,8 +71,23 @@ std::vector<MemberLayout> gpuShadowBoundsCell() {
 }
 
 std::vector<MemberLayout> gpuPcssTaps() {
-    return {MEMBER(GpuPcssTaps, searchTaps), MEMBER(GpuPcssTaps, filterTaps), MEMBER(GpuPcssTaps, perSearchTap),
+    return {MEMBER(GpuPcssTaps, searchTaps), MEMBER(GpuPcssTaps, filterTaps), MEMBER(GpuPcssTaps, perSearchTapSquared),
             MEMBER(GpuPcssTaps, perFilterTap)};
+}
+
+std::vector<MemberLayout> gpuPcssTap() {
+    return {MEMBER(GpuPcssTap, filtered), MEMBER(GpuPcssTap, searched)};
+}
+
+// Members of an array's elements, behind each other.
+void appendArray(std::vector<MemberLayout>& out, std::size_t offset, std::size_t count, std::size_t stride,
+                 const std::vector<MemberLayout>& members) {
+    for (std::size_t i = 0; i < count; ++i) {
+        for (MemberLayout member : members) {
+            member.offset += offset + i * stride;
+            out.push_back(member);
+        }
+    }
 }
 
 std::vector<MemberLayout> gpuFrame() {
@@ -108,12 +123,8 @@ std::vector<MemberLayout> gpuFrame() {
                                      MEMBER(GpuFrame, patternTurn),
                                      MEMBER(GpuFrame, reserved1),
                                      MEMBER(GpuFrame, reserved2)};
-    for (std::size_t i = 0; i < gpu::kMaxPcssPresets; ++i) {
-        for (MemberLayout member : gpuPcssTaps()) {
-            member.offset += offsetof(GpuFrame, pcssTaps) + i * sizeof(GpuPcssTaps);
-            out.push_back(member);
-        }
-    }
+    appendArray(out, offsetof(GpuFrame, pcssTaps), gpu::kMaxPcssPresets, sizeof(GpuPcssTaps), gpuPcssTaps());
+    appendArray(out, offsetof(GpuFrame, pcssPattern), gpu::kMaxPcssTaps, sizeof(GpuPcssTap), gpuPcssTap());
     return out;
 }
 
@@ -131,6 +142,28 @@ std::vector<MemberLayout> gpuCounters() {
             MEMBER(GpuCounters, finalSlotEntries),
             MEMBER(GpuCounters, maxLightsInTile),
             MEMBER(GpuCounters, frameStamp)};
+}
+
+std::vector<MemberLayout> gpuPairQueue() {
+    return {MEMBER(GpuPairQueue, searchGroupCountX),
+            MEMBER(GpuPairQueue, searchGroupCountY),
+            MEMBER(GpuPairQueue, searchGroupCountZ),
+            MEMBER(GpuPairQueue, searchCount),
+            MEMBER(GpuPairQueue, filterGroupCountX),
+            MEMBER(GpuPairQueue, filterGroupCountY),
+            MEMBER(GpuPairQueue, filterGroupCountZ),
+            MEMBER(GpuPairQueue, filterCount),
+            MEMBER(GpuPairQueue, listed),
+            MEMBER(GpuPairQueue, first),
+            MEMBER(GpuPairQueue, reserved0),
+            MEMBER(GpuPairQueue, reserved1)};
+}
+
+std::vector<MemberLayout> gpuPairHead() {
+    std::vector<MemberLayout> out = {MEMBER(GpuPairHead, classifyGroupCountX), MEMBER(GpuPairHead, classifyGroupCountY),
+                                     MEMBER(GpuPairHead, classifyGroupCountZ), MEMBER(GpuPairHead, reserved0)};
+    appendArray(out, offsetof(GpuPairHead, queues), kPairQueueCount, sizeof(GpuPairQueue), gpuPairQueue());
+    return out;
 }
 
 std::vector<MemberLayout> gpuEvaluateHead() {
@@ -190,6 +223,9 @@ const Blocks& libraryBlocks() {
         blocks[{kSetWorking, kBindApproximateCounts}] = {arrayAt(0, 4, {memberAt<uint>(0)})};
         blocks[{kSetWorking, kBindShadowBoundsCells}] = {
             arrayAt(0, sizeof(GpuShadowBoundsCell), gpuShadowBoundsCell())};
+        blocks[{kSetWorking, kBindListTiles}] = {arrayAt(0, 4, {memberAt<uint>(0)})};
+        blocks[{kSetWorking, kBindPairQueues}] = {structAt(0, gpuPairHead())};
+        blocks[{kSetWorking, kBindQueuedPairs}] = {arrayAt(0, 4, {memberAt<uint>(0)})};
         return blocks;
     }();
     return all;
@@ -268,10 +304,10 @@ std::string differences(const std::vector<PartLayout>& shader, const std::vector
 TEST(ShaderInterface, AllShadersAreSeen) {
     std::vector<std::string> names;
     for (const ShaderLayout& shader : libraryAndLighting()) names.push_back(shader.name);
-    for (const char* name :
-         {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "shadow_bounds", "generate_shadows",
-          "gather_statistics", "lighting_deferred", "lighting_evaluate", "lighting_inline", "lighting_deferred_float",
-          "lighting_evaluate_float", "lighting_inline_float"}) {
+    for (const char* name : {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "shadow_bounds",
+                             "filter_tiles", "classify_pairs", "search_pairs", "filter_pairs", "gather_statistics",
+                             "lighting_deferred", "lighting_evaluate", "lighting_inline", "lighting_deferred_float",
+                             "lighting_evaluate_float", "lighting_inline_float"}) {
         EXPECT_NE(std::ranges::find(names, name), names.end()) << name;
     }
 }
@@ -313,8 +349,11 @@ TEST(ShaderInterface, TablesCoverTheStructures) {
     EXPECT_EQ(bytes(gpuShadowView()), sizeof(GpuShadowView));
     EXPECT_EQ(bytes(gpuShadowBoundsCell()), sizeof(GpuShadowBoundsCell));
     EXPECT_EQ(bytes(gpuPcssTaps()), sizeof(GpuPcssTaps));
+    EXPECT_EQ(bytes(gpuPcssTap()), sizeof(GpuPcssTap));
     EXPECT_EQ(bytes(gpuFrame()), sizeof(GpuFrame));
     EXPECT_EQ(bytes(gpuCounters()), sizeof(GpuCounters));
+    EXPECT_EQ(bytes(gpuPairQueue()), sizeof(GpuPairQueue));
+    EXPECT_EQ(bytes(gpuPairHead()), sizeof(GpuPairHead));
     EXPECT_EQ(bytes(gpuEvaluateHead()), sizeof(GpuEvaluateHead));
     EXPECT_EQ(bytes(hostLight()), sizeof(HostLight));
     EXPECT_EQ(bytes(sceneConstants()), sizeof(SceneConstants));
@@ -322,7 +361,7 @@ TEST(ShaderInterface, TablesCoverTheStructures) {
 
 // The comparison above can fail: each difference planted into a real shader's layout is told.
 TEST(ShaderInterface, DifferencesAreTold) {
-    const std::optional<ShaderLayout> shader = shaderNamed("generate_shadows");
+    const std::optional<ShaderLayout> shader = shaderNamed("filter_pairs");
     ASSERT_TRUE(shader);
     const auto lights = std::ranges::find_if(
         shader->resources, [](const ResourceLayout& r) { return r.set == kSetLists && r.binding == kBindLights; });
@@ -398,13 +437,13 @@ TEST(ShaderInterface, MainLightingSeesNoShadowmap) {
         EXPECT_GT(resourcesIn(*deferred, kSetLists), 0u) << name;
     }
     for (const char* name : {"lighting_evaluate", "lighting_inline", "lighting_evaluate_float", "lighting_inline_float",
-                             "generate_shadows"}) {
+                             "filter_tiles", "search_pairs", "filter_pairs"}) {
         const std::optional<ShaderLayout> shader = shaderNamed(name);
         ASSERT_TRUE(shader) << name;
         EXPECT_EQ(resourcesIn(*shader, kSetShadowmaps), kShadowmapsBindingCount) << name;
     }
-    for (const char* name :
-         {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "gather_statistics"}) {
+    for (const char* name : {"hierarchical_depth", "find_lights_approximate", "find_lights_accurate", "classify_pairs",
+                             "gather_statistics"}) {
         const std::optional<ShaderLayout> shader = shaderNamed(name);
         ASSERT_TRUE(shader) << name;
         EXPECT_EQ(resourcesIn(*shader, kSetShadowmaps), 0u) << name;
@@ -433,6 +472,34 @@ TEST(ShaderInterface, ConstantsAreKnown) {
     }
 }
 
+// A pipeline and the values of all constants that it is asked for with.
+struct Made {
+    PassId pass;
+    std::vector<std::uint32_t> values;
+};
+
+// With hard, pcss and pcss-shared, in the order in which they are made: those of the tiles have the tiles' filters
+// alone, and those of a queue its filter and its kind of shadow views.
+std::vector<Made> madeFor(const std::vector<std::uint32_t>& values) {
+    std::vector<Made> out;
+    for (std::uint32_t id = 0; id < kPassCount; ++id) {
+        if (id == kPassSearchPairs || id == kPassFilterPairs) continue;
+        out.push_back({static_cast<PassId>(id), values});
+        if (id == kPassFilterTiles) out.back().values[kSpecFilters] = 1u << kFilterHard;
+    }
+    for (const std::uint32_t filter : {kFilterPcss, kFilterPcssShared}) {
+        for (const std::uint32_t kind : {kShadowViewsOne, kShadowViewsSixFaces, kShadowViewsCascades}) {
+            for (const PassId pass : {kPassFilterPairs, kPassSearchPairs}) {
+                if (pass == kPassSearchPairs && filter != kFilterPcssShared) continue;
+                out.push_back({pass, values});
+                out.back().values[kSpecFilters] = 1u << filter;
+                out.back().values[kSpecShadowViews] = kind;
+            }
+        }
+    }
+    return out;
+}
+
 // Constants reach every pipeline by their ids, those alone that its pass declares; full subgroups are asked for.
 TEST(ShaderInterface, PipelinesGetTheConstants) {
     FakeVulkan vulkan;
@@ -442,7 +509,8 @@ TEST(ShaderInterface, PipelinesGetTheConstants) {
     std::unique_ptr<Context> context;
     ASSERT_TRUE(Context::create(desc, context));
     ShadowSettings settings;
-    settings.filters = only(Filter::Hard) | only(Filter::Pcss);
+    settings.filters = only(Filter::Hard) | only(Filter::Pcss) | only(Filter::PcssShared);
+    settings.lightLists = LightLists::Pixel;
     settings.listReservation = ListReservation::Approximate;
     settings.pcfRadius = 3;
     settings.hostDepthPyramid = true;
@@ -452,7 +520,7 @@ TEST(ShaderInterface, PipelinesGetTheConstants) {
     settings.facedAwayIsDark = true;
     std::vector<std::uint32_t> expected(kSpecCount);
     expected[kSpecSubgroupSize] = 64;
-    expected[kSpecFilters] = 1u << kFilterHard | 1u << kFilterPcss;
+    expected[kSpecFilters] = 1u << kFilterHard | 1u << kFilterPcss | 1u << kFilterPcssShared;
     expected[kSpecListReservation] = kReserveApproximate;
     expected[kSpecPcfRadius] = 3;
     expected[kSpecHostDepthPyramid] = 1;
@@ -461,17 +529,21 @@ TEST(ShaderInterface, PipelinesGetTheConstants) {
     expected[kSpecShadowAtlases] = 2;
     expected[kSpecDepthBias] = kDepthBiasUnbiased;
     expected[kSpecFacedAwayIsDark] = 1;
+    expected[kSpecLightLists] = kListsByPixel;
+    expected[kSpecShadowViews] = kShadowViewsAny;
     EXPECT_TRUE(std::ranges::equal(context->specialization(settings).values, expected));
     ASSERT_TRUE(context->prepare(settings));
-    ASSERT_EQ(vulkan.pipelines.size(), kPassCount);
-    for (std::uint32_t id = 0; id < kPassCount; ++id) {
-        const Pass& pass = passOf(static_cast<PassId>(id));
+    const std::vector<Made> made = madeFor(expected);
+    ASSERT_EQ(vulkan.pipelines.size(), made.size());
+    for (std::size_t i = 0; i < made.size(); ++i) {
+        const Pass& pass = passOf(made[i].pass);
+        SCOPED_TRACE(pass.name);
         std::map<std::uint32_t, std::uint32_t> values;
-        for (const std::uint32_t constant : pass.specialization) values[constant] = expected[constant];
-        EXPECT_EQ(vulkan.pipelines[id].constants, values) << pass.name;
-        EXPECT_EQ(vulkan.pipelines[id].spirvBytes, pass.spirv.size_bytes()) << pass.name;
-        EXPECT_EQ(vulkan.pipelines[id].requiredSubgroupSize, 64u);
-        EXPECT_NE(vulkan.pipelines[id].stageFlags & VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT, 0u);
+        for (const std::uint32_t constant : pass.specialization) values[constant] = made[i].values[constant];
+        EXPECT_EQ(vulkan.pipelines[i].constants, values);
+        EXPECT_EQ(vulkan.pipelines[i].spirvBytes, pass.spirv.size_bytes());
+        EXPECT_EQ(vulkan.pipelines[i].requiredSubgroupSize, 64u);
+        EXPECT_NE(vulkan.pipelines[i].stageFlags & VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT, 0u);
     }
 }
 

@@ -27,12 +27,20 @@ struct Sampler {
 
 Visibility Sampler::soft(std::size_t which, const ReceiverPlane& plane) const {
     // Perspective: metres; orthographic: a tangent. Both came through one rounding to float.
-    const PcssInput pcss = {
-        views(),    input.atlases,  which, rounded(light.sourceRadius, 1), input.pcssPresets[light.pcssPreset],
-        directions, quad != nullptr};
+    PcssTapCounts taps = input.pcssPresets[light.pcssPreset];
+    if (quad != nullptr) taps.search = (taps.search + 1) / 2;
+    const PcssInput pcss = {views(),    input.atlases,  which, rounded(light.sourceRadius, 1), taps,
+                            directions, quad != nullptr};
     if (quad == nullptr) return pcssAt(pcss, plane);
     Visibility result = quad->mayBeOwn ? pcssAt(pcss, plane) : kNone;
-    for (const Interval radiusPx : quad->radiiPx) result = merge(result, pcssFilterAt(pcss, plane, radiusPx));
+    const auto texelsPerUnit = [&](std::size_t view) {
+        return rounded(std::max(views()[view].pxPerMetreX, views()[view].pxPerMetreY));
+    };
+    for (const QuadFinding::Radius& radius : quad->radii) {
+        Interval px = radius.px;
+        if (radius.view != which) px = max(px * texelsPerUnit(which) / texelsPerUnit(radius.view), 1.0);
+        result = merge(result, pcssFilterAt(pcss, plane, px));
+    }
     return result;
 }
 
@@ -75,9 +83,13 @@ Visibility asked(const Sampler& sampler, bool faces) {
     if (quad == nullptr) return sampler.sampleLight(faces);
     if (quad->unknown) return kAny;
     Visibility result = kNone;
-    if (quad->mayBeDark) result = merge(result, kDark);
+    // The last cascade blends even what is dark into light.
+    const bool cascades = sampler.light.type == LightType::Directional;
+    const auto dark = [](std::size_t) { return kDark; };
+    if (quad->mayBeDark)
+        result = merge(result, cascades ? throughCascades(sampler.views(), sampler.pixel, dark) : kDark);
     if (quad->mayBeLit) result = merge(result, kLit);
-    if (quad->mayBeOwn || !quad->radiiPx.empty()) result = merge(result, sampler.sampleLight(faces));
+    if (quad->mayBeOwn || !quad->radii.empty()) result = merge(result, sampler.sampleLight(faces));
     return result;
 }
 

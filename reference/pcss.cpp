@@ -233,7 +233,7 @@ std::vector<DiskDirection> diskDirections(std::uint32_t x, std::uint32_t y, std:
 }
 
 TapRange tapsForRadius(int most, Interval radiusPx) {
-    const Interval wanted = double(most) * (rounded(5.0 / 12.0) + radiusPx * radiusPx * (1.0 / 32.0));
+    const Interval wanted = double(most) * (rounded(1.0 / 3.0) + radiusPx * radiusPx * (1.0 / 32.0));
     const auto taps = [&](double value) { return std::min(static_cast<int>(std::min(value, 64.0)) + 1, most); };
     return {taps(wanted.lo), taps(wanted.hi)};
 }

@@ -44,7 +44,7 @@ struct DiskDirection {
 };
 std::vector<DiskDirection> diskDirections(std::uint32_t x, std::uint32_t y, std::uint32_t turn, int count);
 
-/// How many filter taps a penumbra takes whose taps follow its radius in texels: 5/12 of them at 0, 1/32 more per
+/// How many filter taps a penumbra takes whose taps follow its radius in texels: a third of them at 0, 1/32 more per
 /// square texel, rounded down to whole ones and one more, at most all of them. Rounding may turn that: first and last.
 struct TapRange {
     int from = 1, to = 1;

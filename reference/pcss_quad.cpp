@@ -8,10 +8,11 @@
 namespace gnomon::reference {
 namespace {
 
-constexpr double kFlatness = 0.25;
+constexpr double kFlatness = 0.25, kLeastCosine = double(0.97f);
 constexpr double kRadiusParts = 1024, kMostParts = gpu::kQuadMostRadius;
+constexpr std::size_t kNoView = ~std::size_t{0};
 
-/// A shadow view that a pixel may take alone, unblended.
+/// A shadow view that a pixel may take first, or kNoView.
 struct ViewTaken {
     std::size_t view = 0;
     Verdict verdict = Verdict::May;
@@ -21,18 +22,13 @@ std::vector<ViewTaken> cascadesTaken(std::span<const ShadowViewModel> cascades, 
     std::vector<ViewTaken> result;
     Verdict noneBefore = Verdict::Must;
     for (std::size_t i = 0; i < cascades.size(); ++i) {
-        const CascadeFit fit = fitIn(cascades[i], pixel);
-        if (fit.holds == Verdict::Never) continue;
-        const bool last = i + 1 == cascades.size();
-        const Verdict next = last ? Verdict::Must : fitIn(cascades[i + 1], pixel).holds;
-        Verdict alone = Verdict::Never;
-        if (fit.blend.lo <= 0 || next != Verdict::Must) alone = Verdict::May;
-        if (fit.blend.hi <= 0 || next == Verdict::Never) alone = Verdict::Must;
-        const Verdict verdict = both(both(fit.holds, alone), noneBefore);
-        if (verdict != Verdict::Never) result.push_back({i, verdict});
-        if (fit.holds == Verdict::Must) break;
+        const Verdict holds = fitIn(cascades[i], pixel).holds;
+        if (holds == Verdict::Never) continue;
+        result.push_back({i, both(holds, noneBefore)});
+        if (holds == Verdict::Must) return result;
         noneBefore = Verdict::May;
     }
+    result.push_back({kNoView, noneBefore});
     return result;
 }
 
@@ -65,17 +61,13 @@ private:
     void findMiddle();
     [[nodiscard]] Verdict isFlat() const;
     [[nodiscard]] Verdict allTake(std::size_t view) const;
-    [[nodiscard]] Vec3 awayOf(const Pixel& pixel) const { return pixel.position - middle_.position; }
-    [[nodiscard]] double awayError(const Pixel& pixel) const {
-        return asking_.size() == 1 ? 0.0 : pixel.positionError + middle_.positionError;
-    }
     void search(QuadFinding& out, std::size_t view) const;
 
     const LightModel& light_;
     const ShadowInput& input_;
     std::vector<const Pixel*> asking_;
     Pixel middle_;
-    Interval distance_ = 0.0;  ///< of the farthest from the middle, metres
+    Interval distance_ = 0.0;  ///< half the diagonal of the box around them, metres
 };
 
 void Sharing::findMiddle() {
@@ -84,34 +76,42 @@ void Sharing::findMiddle() {
     middle_.x = first.x & ~1u;
     middle_.y = first.y & ~1u;
     if (asking_.size() == 1) return;
-    const double count = static_cast<double>(asking_.size());
-    Vec3 sum;
+    Vec3 low = first.position, high = first.position;
     double error = 0, magnitude = 0;
     for (const Pixel* pixel : asking_) {
-        sum = sum + pixel->position;
-        error += pixel->positionError;
-        magnitude += sumOfMagnitudes(pixel->position);
+        const Vec3& p = pixel->position;
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        error = std::max(error, pixel->positionError);
+        magnitude = std::max(magnitude, sumOfMagnitudes(p));
         if (pixel->offPlaneMetres <= middle_.offPlaneMetres) continue;
         middle_.offPlaneMetres = pixel->offPlaneMetres;
         middle_.offPlaneError = std::max(middle_.offPlaneError, pixel->offPlaneError);
     }
-    middle_.position = sum / count;
-    middle_.positionError = (error + 5 * kFloatRoundoff * magnitude) / count;
-    for (const Pixel* pixel : asking_)
-        distance_ = max(distance_, max(rounded(within(length(awayOf(*pixel)), awayError(*pixel)), 8), 0.0));
+    const Vec3 centre = 0.5 * (low + high);
+    const double off = ignoresFaceNormals(input_) ? 0.0 : dot(first.faceNormal, centre - first.position);
+    middle_.position = centre - off * first.faceNormal;
+    middle_.positionError = 3 * error + 16 * kFloatRoundoff * magnitude;
+    distance_ = max(rounded(within(0.5 * length(high - low), 2 * error), 8), 0.0);
 }
 
 Verdict Sharing::isFlat() const {
     if (ignoresFaceNormals(input_)) return Verdict::Must;
-    Interval off = 0.0;
-    for (const Pixel* pixel : asking_) {
-        const Vec3 away = awayOf(*pixel);
-        const double error = awayError(*pixel) + 16 * kFloatRoundoff * length(away);
-        off = max(off, abs(within(dot(pixel->faceNormal, away), error)));
+    const Pixel& first = *asking_.front();
+    Verdict flat = Verdict::Must;
+    double offPlane = first.offPlaneMetres, offPlaneError = first.offPlaneError;
+    for (std::size_t i = 1; i < asking_.size(); ++i) {
+        const Pixel& pixel = *asking_[i];
+        offPlane = std::max(offPlane, pixel.offPlaneMetres);
+        offPlaneError = std::max(offPlaneError, pixel.offPlaneError);
+        const Vec3 away = pixel.position - first.position;
+        const double error = pixel.positionError + first.positionError + 16 * kFloatRoundoff * length(away);
+        const Interval off = abs(within(dot(first.faceNormal, away), error));
+        const Interval most = kFlatness * within(length(away), error) + 2.0 * within(offPlane, offPlaneError);
+        flat = both(flat, atLeast(most - off, 0.0));
+        flat = both(flat, atLeast(within(dot(first.faceNormal, pixel.faceNormal), 1e-5), kLeastCosine));
     }
-    const Interval most = kFlatness * distance_ + 2.0 * within(middle_.offPlaneMetres, middle_.offPlaneError);
-    if (off.hi <= most.lo) return Verdict::Must;
-    return off.lo > most.hi ? Verdict::Never : Verdict::May;
+    return flat;
 }
 
 Verdict Sharing::allTake(std::size_t view) const {
@@ -132,6 +132,10 @@ Interval roundedToParts(Interval radiusPx) {
 }
 
 void Sharing::search(QuadFinding& out, std::size_t view) const {
+    if (view == kNoView) {
+        out.mayBeLit = true;
+        return;
+    }
     const PcssTapCounts taps = input_.pcssPresets[light_.pcssPreset];
     const std::vector<DiskDirection> directions = diskDirections(middle_.x, middle_.y, input_.patternTurn, taps.search);
     const auto views = std::span(input_.views).subspan(light_.firstShadowView, light_.viewCount());
@@ -148,7 +152,7 @@ void Sharing::search(QuadFinding& out, std::size_t view) const {
             const PcssSearch found = pcssSearchAt(pcss, plane, distance_);
             out.mayBeDark = out.mayBeDark || found.mayBeDark;
             out.mayBeLit = out.mayBeLit || found.mayBeLit;
-            if (found.mayBePartial) out.radiiPx.push_back(roundedToParts(found.radiusPx));
+            if (found.mayBePartial) out.radii.push_back({view, roundedToParts(found.radiusPx)});
         }
     }
 }

@@ -6,14 +6,16 @@
 // What, for an aligned quad of 2x2 pixels and a light:
 //   1. A pixel asks if it is in the light's influence and not dark by its facing alone. Others, and those beyond the
 //      picture, take no part.
-//   2. The quad shares if all that ask do so in the same shadow view, unblended; are all subsurface or none; and lie in
-//      one plane: with m the mean of their positions and d the largest distance from it, each lies off m's place across
-//      its own face by no more than a quarter of d and twice the largest off-plane error among them.
-//   3. It searches once, for a receiver at m with the face normal of the first pixel that asks (left before right,
-//      upper row first) and the largest off-plane error; by the pattern of the quad's first pixel, whether that asks or
-//      not; for receivers that lie up to d aside.
+//   2. The quad shares if all that ask take the same shadow view first, or none; are all subsurface or none; and lie in
+//      one plane with the first of them (left before right, upper row first): off the first one's face by no more than
+//      a quarter of how far they are from it and twice the largest off-plane error up to them, with normals whose
+//      cosine is at least 0.97.
+//   3. It searches once, for a receiver in the middle of the box around them, moved onto the first one's face, with
+//      that face's normal and the largest off-plane error; by the pattern of the quad's first pixel, whether that asks
+//      or not; for receivers that lie aside by up to half of the box's diagonal.
 //   4. The search says dark, or lit, or a radius, which is rounded to 1/1024 of a texel. By that radius each pixel
-//      filters from its own place. If the quad does not share, each pixel searches by itself.
+//      filters from its own place, in a next cascade that blends in as well. If the quad does not share, each pixel
+//      searches by itself, with half of the taps.
 //   5. The filter's taps follow the radius: tapsForRadius().
 // Every decision that hangs on floats is taken both ways: which pixels ask, their view, flatness, and the search.
 //
@@ -39,7 +41,11 @@ struct QuadFinding {
     bool mayBeOwn = false;  ///< each pixel searches by itself
     bool mayBeDark = false, mayBeLit = false;
     bool unknown = false;           ///< anything may come out
-    std::vector<Interval> radiiPx;  ///< of the filter, in texels
+    struct Radius {
+        std::size_t view;  ///< of the light
+        Interval px;       ///< of the filter, in texels of that view
+    };
+    std::vector<Radius> radii;
 };
 QuadFinding findQuad(const LightModel& light, const QuadPixels& quad, const ShadowInput& input);
 

@@ -54,7 +54,7 @@ void addReceiver(GpuLight light, Receiver r, uint before, inout QuadReceivers al
     precise float off = abs(dot(all.first.faceNormalWs, away));
     precise float apart = sqrt(dot(away, away));
     bool flatly = off <= kQuadFlatness * apart + 2.0 * all.first.offPlaneMetres &&
-                  dot(all.first.faceNormalWs, r.faceNormalWs) >= kQuadLeastCosine;
+                  (!kNeedsFaceNormals || dot(all.first.faceNormalWs, r.faceNormalWs) >= kQuadLeastCosine);
     bool alike = choice.view == all.view && choice.none == all.none && r.subsurface == all.first.subsurface;
     all.share = all.share && alike && (flatly || before == 0u);
 }

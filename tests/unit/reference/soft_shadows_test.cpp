@@ -300,7 +300,7 @@ struct Quad {
     }
     [[nodiscard]] bool ownAlone() const {
         const QuadFinding found = find();
-        return found.mayBeOwn && !found.mayBeDark && !found.mayBeLit && found.radiiPx.empty() && !found.unknown;
+        return found.mayBeOwn && !found.mayBeDark && !found.mayBeLit && found.radii.empty() && !found.unknown;
     }
     [[nodiscard]] bool shares() const { return !find().mayBeOwn; }
 };
@@ -309,17 +309,17 @@ struct Quad {
 TEST(SharedSearch, FindsDarkLitAndTheRadius) {
     const double half = 0.3 * 1.0 / 3.0;
     EXPECT_TRUE(Quad(-1.8).find().mayBeDark);  // as far as the search reaches
-    EXPECT_TRUE(Quad(-1.8).find().radiiPx.empty());
+    EXPECT_TRUE(Quad(-1.8).find().radii.empty());
     EXPECT_TRUE(Quad(3 * half).find().mayBeLit);
-    EXPECT_TRUE(Quad(3 * half).find().radiiPx.empty());
+    EXPECT_TRUE(Quad(3 * half).find().radii.empty());
     const Quad quad(0);
     const QuadFinding found = quad.find();
     EXPECT_FALSE(found.mayBeOwn || found.mayBeDark || found.mayBeLit || found.unknown);
-    ASSERT_EQ(found.radiiPx.size(), 1u);
+    ASSERT_EQ(found.radii.size(), 1u);
     const double texels = half / 4 * quad.stage.input.views[0].pxPerMetreX;
-    EXPECT_NEAR(found.radiiPx[0].middle(), texels, 0.05 * texels);
-    EXPECT_LT(found.radiiPx[0].width(), 0.01);
-    for (const double px : {found.radiiPx[0].lo, found.radiiPx[0].hi})
+    EXPECT_NEAR(found.radii[0].px.middle(), texels, 0.05 * texels);
+    EXPECT_LT(found.radii[0].px.width(), 0.01);
+    for (const double px : {found.radii[0].px.lo, found.radii[0].px.hi})
         EXPECT_NEAR(px * 1024, std::round(px * 1024), 0.01);
 }
 
@@ -331,7 +331,7 @@ TEST(SharedSearch, ReachesAsFarAsItsPixelsLieApart) {
     EXPECT_FALSE(narrow.find().mayBeOwn);
     EXPECT_TRUE(narrow.find().mayBeLit);
     EXPECT_FALSE(wide.find().mayBeLit);
-    EXPECT_FALSE(wide.find().radiiPx.empty());
+    EXPECT_FALSE(wide.find().radii.empty());
 }
 
 TEST(SharedSearch, SharesInOnePlaneAndOneView) {
@@ -361,7 +361,7 @@ TEST(SharedSearch, SharesInOnePlaneAndOneView) {
     // Too close to call: both.
     Quad close(4.005, 0.01, LightType::Point);
     EXPECT_TRUE(close.find().mayBeOwn);
-    EXPECT_TRUE(close.find().mayBeLit || close.find().mayBeDark || !close.find().radiiPx.empty());
+    EXPECT_TRUE(close.find().mayBeLit || close.find().mayBeDark || !close.find().radii.empty());
 }
 
 // A flat quad is decided by a quarter of how far it reaches.

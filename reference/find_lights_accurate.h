@@ -1,5 +1,6 @@
 #pragma once
-// Phase 3, Find lights accurate: which light reaches which pixel, and so which lights a shadow tile must list.
+// Phase 3, Find lights accurate: which light reaches which pixel, and so which lights a shadow tile must list. Where
+// phase 2 writes the lists (kListsByFroxel) it is a tile's least list.
 //
 // Source: the specification, Phase 3 and slip 7; the paper, section 2.3.
 //
@@ -41,7 +42,8 @@ struct EarlyListReport {
     std::size_t tilesWithoutSpace = 0;
     [[nodiscard]] double mayShare() const { return must + may ? double(may) / double(must + may) : 0.0; }
 };
-/// must is in the list, and the list in must or may; the number of casting lights in the count word is right.
+/// must is in the list; the number of casting lights in the count word is right. Of phase 3's lists: the list is in
+/// must or may. Of phase 2's lists: they are as long as the approximate count.
 EarlyListReport checkEarlyLists(const std::vector<TileLights>& expected, const std::vector<LightModel>& lights,
                                 const ListBuffers& buffers);
 

@@ -22,6 +22,23 @@ void checkTile(ApproximateReport& report, std::size_t tile, const TileLights& wa
         report.findings.add("tile %zu: early count %u exceeds the approximate %u", tile, early, approximate);
 }
 
+/// The lights of the early lists of a group's tiles.
+struct GroupLists {
+    std::set<std::uint32_t> lights;
+    bool complete = true;  ///< all its tiles have list space
+};
+
+void checkUnion(ApproximateReport& report, std::size_t group, std::span<const std::uint32_t> entry,
+                const GroupLists& lists) {
+    for (std::uint32_t i = 0; i < gpu::kMaxLightsPerView; ++i) {
+        const bool listed = lists.lights.count(i) != 0;
+        if (listed && !maskHas(entry, i))
+            report.findings.add("tile group %zu: a tile lists light %u, which the mask has not", group, i);
+        if (!listed && lists.complete && maskHas(entry, i))
+            report.findings.add("tile group %zu: no tile lists light %u of the mask", group, i);
+    }
+}
+
 }  // namespace
 
 ApproximateReport checkApproximate(const PixelGrid& grid, const std::vector<TileLights>& expected,
@@ -34,6 +51,7 @@ ApproximateReport checkApproximate(const PixelGrid& grid, const std::vector<Tile
         return report;
     }
     std::vector<std::set<std::uint32_t>> reaching(groups);
+    std::vector<GroupLists> lists(groups);
     for (std::uint32_t tileY = 0; tileY < grid.tilesY; ++tileY) {
         for (std::uint32_t tileX = 0; tileX < grid.tilesX; ++tileX) {
             const std::size_t tile = std::size_t(tileY) * grid.tilesX + tileX;
@@ -43,6 +61,9 @@ ApproximateReport checkApproximate(const PixelGrid& grid, const std::vector<Tile
                       groupMasks.subspan(group * gpu::kLightMaskEntryWords, gpu::kLightMaskEntryWords), buffers);
             reaching[group].insert(expected[tile].must.begin(), expected[tile].must.end());
             reaching[group].insert(expected[tile].may.begin(), expected[tile].may.end());
+            const std::vector<std::uint32_t> listed = earlyLights(buffers, tile);
+            lists[group].lights.insert(listed.begin(), listed.end());
+            lists[group].complete = lists[group].complete && !hasNoListSpace(buffers, tile);
         }
     }
     for (std::size_t group = 0; group < groups; ++group) {
@@ -54,6 +75,7 @@ ApproximateReport checkApproximate(const PixelGrid& grid, const std::vector<Tile
             if (i >= lightCount)
                 report.findings.add("tile group %zu has the bit of light %u of %zu", group, i, lightCount);
         }
+        if (buffers.lightLists == gpu::kListsByFroxel) checkUnion(report, group, entry, lists[group]);
     }
     return report;
 }

@@ -5,7 +5,8 @@
 //
 // What: phase 2 may keep too many lights, never too few. A light that surely reaches a pixel of a tile (phase 3's own
 // tests, find_lights_accurate.h) must be in the light mask of the tile's group and in the tile's count, and no early
-// count may exceed the approximate one.
+// count may exceed the approximate one. Where phase 2 writes the early lists (kListsByFroxel), a group's mask is
+// exactly the union of its tiles' lists.
 //
 // Limits: the froxel tests themselves are not written again. How tight they are is reported: counted entries against
 // those that the exact tests would allow.
@@ -28,7 +29,8 @@ struct ApproximateReport {
 };
 
 /// `expected`: findLights() with the facing rule that the frame uses. `groupMasks`: kLightMaskEntryWords words per tile
-/// group, in rows; words whose group bit is clear count as zero.
+/// group, in rows; words whose group bit is clear count as zero. A group's mask is held to the union of its lists only
+/// where all its tiles have list space.
 ApproximateReport checkApproximate(const PixelGrid& grid, const std::vector<TileLights>& expected,
                                    std::size_t lightCount, std::span<const std::uint32_t> groupMasks,
                                    const ListBuffers& buffers);

@@ -3,40 +3,44 @@
 
 #include "gpu_interface/numbers.h"
 #include "reference/cascades.h"
+#include "reference/pcss_quad.h"
+#include "reference/receiver_views.h"
 
 namespace gnomon::reference {
 namespace {
 
-constexpr double kRoundings = 8;
+/// One light at one pixel.
+struct Sampler {
+    const LightModel& light;
+    const Pixel& pixel;
+    const ShadowInput& input;
+    const QuadFinding* quad = nullptr;  ///< of Filter::PcssShared
+    std::vector<DiskDirection> directions;
 
-/// Does the pixel look at the light: c > 0?
-struct Facing {
-    bool mayFace = false, mayFaceAway = false;
-};
-Facing facingOf(const LightModel& light, const Pixel& pixel) {
-    double cosine = 0, error = kRoundings * kFloatRoundoff;
-    if (light.type == LightType::Directional) {
-        cosine = dot(pixel.faceNormal, -light.direction);
-    } else {
-        const Vec3 toLight = light.position - pixel.position;
-        const double distance = std::max(length(toLight), 1e-12);
-        cosine = dot(pixel.faceNormal, toLight) / distance;
-        error = 2 * error + 2 * pixel.positionError / distance;
+    [[nodiscard]] std::span<const ShadowViewModel> views() const {
+        return std::span(input.views).subspan(light.firstShadowView, light.viewCount());
     }
-    return {cosine > -error, cosine <= error};
+    [[nodiscard]] Visibility soft(std::size_t which, const ReceiverPlane& plane) const;
+    [[nodiscard]] Visibility sampleView(std::size_t which, bool faces) const;
+    [[nodiscard]] Visibility sampleLight(bool faces) const;
+};
+
+Visibility Sampler::soft(std::size_t which, const ReceiverPlane& plane) const {
+    // Perspective: metres; orthographic: a tangent. Both came through one rounding to float.
+    const PcssInput pcss = {
+        views(),    input.atlases,  which, rounded(light.sourceRadius, 1), input.pcssPresets[light.pcssPreset],
+        directions, quad != nullptr};
+    if (quad == nullptr) return pcssAt(pcss, plane);
+    Visibility result = quad->mayBeOwn ? pcssAt(pcss, plane) : kNone;
+    for (const Interval radiusPx : quad->radiiPx) result = merge(result, pcssFilterAt(pcss, plane, radiusPx));
+    return result;
 }
 
-Visibility sampleView(const LightModel& light, std::size_t which, const Pixel& pixel, const ShadowInput& input,
-                      bool faces, std::span<const DiskDirection> directions) {
-    const auto views = std::span(input.views).subspan(light.firstShadowView, light.viewCount());
-    const ShadowViewModel& view = views[which];
-    const Bias bias = {.metres = light.biasMetres,
-                       .leastMetres = pixel.subsurface ? input.subsurfaceBiasMetres : 0.0,
-                       .none = input.bias == BiasMode::Unbiased};
-    const DepthMode mode = input.bias == BiasMode::Oriented ? DepthMode::Plane : DepthMode::Constant;
-    const ReceiverInView receiver = receiverIn(view, pixel, mode, bias, faces || pixel.subsurface);
+Visibility Sampler::sampleView(std::size_t which, bool faces) const {
+    const ReceiverInView receiver = receiverInView(light, which, pixel, input, faces || pixel.subsurface);
     if (receiver.unknown) return kAny;
     Visibility result = receiver.mayBeBehind ? kLit : kNone;
+    const ShadowViewModel& view = views()[which];
     for (const ReceiverPlane& plane : receiver.planes) {
         const Comparison comparison = {view, input.atlases[view.atlas], plane};
         switch (light.filter) {
@@ -47,10 +51,8 @@ Visibility sampleView(const LightModel& light, std::size_t which, const Pixel& p
                 result = merge(result, pcfAt(comparison, input.pcfRadius, plane.xPx, plane.yPx));
                 break;
             case Filter::Pcss:
-                // Perspective: metres; orthographic: a tangent. Both came through one rounding to float.
-                result = merge(result, pcssAt({views, input.atlases, which, rounded(light.sourceRadius, 1),
-                                               input.pcssPresets[light.pcssPreset], directions},
-                                              plane));
+            case Filter::PcssShared:
+                result = merge(result, soft(which, plane));
                 break;
             case Filter::Host:
                 return kAny;
@@ -59,52 +61,48 @@ Visibility sampleView(const LightModel& light, std::size_t which, const Pixel& p
     return result;
 }
 
-/// Faces that may be taken: the largest component, and those that float errors could put before it.
-std::vector<std::size_t> facesOf(const LightModel& light, const Pixel& pixel) {
-    if (!light.sixFaces) return {0};
-    const Vec3 v = pixel.position - light.position;
-    const double error =
-        2 * pixel.positionError + kRoundings * kFloatRoundoff * (sumOfMagnitudes(light.position) + sumOfMagnitudes(v));
-    const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-    std::vector<std::size_t> result;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double value = component(v, axis);
-        if (std::abs(value) < largest - error) continue;
-        if (value >= -error) result.push_back(2 * axis);
-        if (value <= error) result.push_back(2 * axis + 1);
-    }
-    return result;
-}
-
-Visibility sampleLight(const LightModel& light, const Pixel& pixel, const ShadowInput& input, bool faces,
-                       std::span<const DiskDirection> directions) {
-    const auto sample = [&](std::size_t which) { return sampleView(light, which, pixel, input, faces, directions); };
-    if (light.type == LightType::Directional) {
-        const auto cascades = std::span(input.views).subspan(light.firstShadowView, light.viewCount());
-        return throughCascades(cascades, pixel, sample);
-    }
+Visibility Sampler::sampleLight(bool faces) const {
+    const auto sample = [&](std::size_t which) { return sampleView(which, faces); };
+    if (light.type == LightType::Directional) return throughCascades(views(), pixel, sample);
     Visibility result = kNone;
     for (const std::size_t face : facesOf(light, pixel)) result = merge(result, sample(face));
     return result;
 }
 
+/// Of a pixel that asks the light's shadowmaps.
+Visibility asked(const Sampler& sampler, bool faces) {
+    const QuadFinding* quad = sampler.quad;
+    if (quad == nullptr) return sampler.sampleLight(faces);
+    if (quad->unknown) return kAny;
+    Visibility result = kNone;
+    if (quad->mayBeDark) result = merge(result, kDark);
+    if (quad->mayBeLit) result = merge(result, kLit);
+    if (quad->mayBeOwn || !quad->radiiPx.empty()) result = merge(result, sampler.sampleLight(faces));
+    return result;
+}
+
 }  // namespace
 
-Visibility visibility(const LightModel& light, const Pixel& pixel, const ShadowInput& input) {
+Visibility visibility(const LightModel& light, const Pixel& pixel, const ShadowInput& input, const QuadFinding* quad) {
     if (!light.casts || light.firstShadowView == kNoShadowViews || input.shadowsOff) return kLit;
-    if (!pixel.hasFaceNormal && (input.bias != BiasMode::Unbiased || input.facedAwayIsDark)) return kAny;
+    if (!pixel.hasFaceNormal && !ignoresFaceNormals(input)) return kAny;
     const Facing facing = facingOf(light, pixel);
     const bool sampleAway = !input.facedAwayIsDark && !pixel.subsurface;
     if (!pixel.subsurface && !facing.mayFace && !sampleAway) return kDark;
-    std::vector<DiskDirection> directions;
-    if (light.filter == Filter::Pcss) {
+    Sampler sampler = {light, pixel, input, nullptr, {}};
+    QuadFinding alone;
+    if (light.filter == Filter::PcssShared) {
+        if (quad == nullptr) alone = findQuad(light, {&pixel}, input);
+        sampler.quad = quad == nullptr ? &alone : quad;
+    }
+    if (isSoft(light.filter)) {
         const PcssTapCounts taps = input.pcssPresets[light.pcssPreset];
-        directions = diskDirections(pixel.x, pixel.y, input.patternTurn, std::max(taps.search, taps.filter));
+        sampler.directions = diskDirections(pixel.x, pixel.y, input.patternTurn, std::max(taps.search, taps.filter));
     }
     Visibility result = kNone;
-    if (facing.mayFace || pixel.subsurface) result = sampleLight(light, pixel, input, true, directions);
+    if (facing.mayFace || pixel.subsurface) result = asked(sampler, true);
     if (!facing.mayFaceAway || pixel.subsurface) return result;
-    return merge(result, sampleAway ? sampleLight(light, pixel, input, false, directions) : kDark);
+    return merge(result, sampleAway ? asked(sampler, false) : kDark);
 }
 
 Interval shadowFadeAt(const LightModel& light, const Pixel& pixel) {
@@ -129,9 +127,10 @@ StoredVisibility quantised(Visibility range, Interval shadowFade, int levels) {
     return {stored(range.min, shadowFade.hi, -1.0), stored(range.max, shadowFade.lo, 1.0)};
 }
 
-StoredVisibility storedVisibility(const LightModel& light, const Pixel& pixel, const ShadowInput& input) {
+StoredVisibility storedVisibility(const LightModel& light, const Pixel& pixel, const ShadowInput& input,
+                                  const QuadFinding* quad) {
     if (!light.casts) return {input.levels(), input.levels()};
-    return quantised(visibility(light, pixel, input), shadowFadeAt(light, pixel), input.levels());
+    return quantised(visibility(light, pixel, input, quad), shadowFadeAt(light, pixel), input.levels());
 }
 
 }  // namespace gnomon::reference

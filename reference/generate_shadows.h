@@ -14,7 +14,7 @@
 //      frame's): receiver_plane.h. A texel is lit iff its surface is no nearer to the light than that plane at the
 //      texel's centre.
 //   4. By the light's own filter. Hard and percentage closer filtering: filters.h. Soft shadows: pcss.h, with the taps
-//      of the light's preset.
+//      of the light's preset. Soft shadows with one search for four pixels: pcss_quad.h.
 //   5. v' = 1 - f (1 - v), f being the light's shadow fade, for directional lights one of the distance from the camera
 //      to p. q = round(levels sqrt(v')), levels = 255 or 15.
 // Every decision that float errors could turn (a comparison, a texel, a face, a cascade, a blocker, c <= 0) is taken
@@ -65,13 +65,18 @@ struct StoredVisibility {
     [[nodiscard]] bool holds(int q) const { return q >= min && q <= max; }
 };
 
-/// Steps 1 to 4. The pixel must not be background.
-Visibility visibility(const LightModel& light, const Pixel& pixel, const ShadowInput& input);
+struct QuadFinding;  // pcss_quad.h
+
+/// Steps 1 to 4. The pixel must not be background. `quad`: for Filter::PcssShared, what the pixel's quad has found;
+/// null: the pixel is alone in it.
+Visibility visibility(const LightModel& light, const Pixel& pixel, const ShadowInput& input,
+                      const QuadFinding* quad = nullptr);
 /// The shadow fade of a light at a pixel.
 Interval shadowFadeAt(const LightModel& light, const Pixel& pixel);
 /// Step 5.
 StoredVisibility quantised(Visibility visibility, Interval shadowFade, int levels = 255);
 /// All steps.
-StoredVisibility storedVisibility(const LightModel& light, const Pixel& pixel, const ShadowInput& input);
+StoredVisibility storedVisibility(const LightModel& light, const Pixel& pixel, const ShadowInput& input,
+                                  const QuadFinding* quad = nullptr);
 
 }  // namespace gnomon::reference

@@ -1,7 +1,9 @@
 // See generate_shadows_check.h.
 #include "reference/generate_shadows_check.h"
 
-#include <optional>
+#include <algorithm>
+
+#include "reference/pcss_quad.h"
 
 namespace gnomon::reference {
 namespace {
@@ -15,10 +17,11 @@ struct Voter {
 std::vector<Voter> voters(const PixelGrid& grid, std::uint32_t tileX, std::uint32_t tileY, const LightModel& light,
                           const ShadowInput& input) {
     std::vector<Voter> result;
+    QuadFindings quads(light, grid, input);
     for (const auto [x, y] : grid.tilePixels(tileX, tileY)) {
         const Verdict votes = inInfluence(light, grid.at(x, y));
         if (votes == Verdict::Never) continue;
-        result.push_back({x, y, votes == Verdict::Must, storedVisibility(light, grid.at(x, y), input)});
+        result.push_back({x, y, votes == Verdict::Must, storedVisibility(light, grid.at(x, y), input, quads.at(x, y))});
     }
     return result;
 }
@@ -55,34 +58,45 @@ void checkSlot(ShadowReport& report, const ListBuffers& buffers, std::size_t til
     }
 }
 
-void checkPair(ShadowReport& report, const ListBuffers& buffers, std::size_t tile, std::uint32_t light,
-               const std::vector<Voter>& all, int levels, std::optional<std::uint32_t> slotOrFlag, bool mayEvaluate) {
+/// Is a slot, or EVALUATE in its place, needed?
+void checkNeed(ShadowReport& report, std::size_t tile, const LightModel& light, const FinalEntry& entry,
+               const std::vector<Voter>& all, int levels) {
+    const Unanimity together = unanimity(all, levels);
+    const bool shared = light.filter == Filter::PcssShared;
+    const bool slot = isSlot(entry.slotOrFlag);
+    if (together.mustBeDark && (slot || !shared))
+        report.findings.add("tile %zu: light %u is all dark but not flagged so", tile, entry.light);
+    const bool everyPixelVotes = all.size() == gpu::kWorkGroupSize &&
+                                 std::all_of(all.begin(), all.end(), [](const Voter& v) { return v.surely; });
+    if (together.mustBeLit && (!shared || (slot && everyPixelVotes)))
+        report.findings.add("tile %zu: light %u is all lit but not flagged so", tile, entry.light);
+}
+
+void checkPair(ShadowReport& report, const ListBuffers& buffers, std::size_t tile, const LightModel& light,
+               const FinalEntry& entry, const std::vector<Voter>& all, int levels, bool mayEvaluate) {
     for (const Voter& voter : all) {
         ++report.pairs;
         report.ambiguousPairs += voter.stored.ambiguous();
         report.loosePairs += voter.stored.max - voter.stored.min > 1;
     }
     const Unanimity together = unanimity(all, levels);
-    if (!slotOrFlag) {
-        ++report.absent;
-        if (!together.mayBeDark) report.findings.add("tile %zu: light %u is absent but not all dark", tile, light);
-        return;
-    }
-    if (together.mustBeDark) report.findings.add("tile %zu: light %u is listed but all dark", tile, light);
-    if (*slotOrFlag == gpu::kSlotAllLit) {
+    if (entry.slotOrFlag == gpu::kSlotAllUnlit) {
+        ++report.allUnlit;
+        if (!together.mayBeDark)
+            report.findings.add("tile %zu: light %u is ALL_UNLIT but not all dark", tile, entry.light);
+    } else if (entry.slotOrFlag == gpu::kSlotAllLit) {
         ++report.allLit;
-        if (!together.mayBeLit) report.findings.add("tile %zu: light %u is ALL_LIT but not all lit", tile, light);
-        return;
-    }
-    if (together.mustBeLit) report.findings.add("tile %zu: light %u is all lit but not flagged so", tile, light);
-    if (*slotOrFlag == gpu::kSlotEvaluate) {
+        if (!together.mayBeLit) report.findings.add("tile %zu: light %u is ALL_LIT but not all lit", tile, entry.light);
+    } else if (entry.slotOrFlag == gpu::kSlotEvaluate) {
         ++report.evaluate;
-        if (!mayEvaluate) report.findings.add("tile %zu: light %u is EVALUATE without overflow", tile, light);
-    } else if (isSlot(*slotOrFlag)) {
+        checkNeed(report, tile, light, entry, all, levels);
+        if (!mayEvaluate) report.findings.add("tile %zu: light %u is EVALUATE without overflow", tile, entry.light);
+    } else if (isSlot(entry.slotOrFlag)) {
         ++report.slots;
-        checkSlot(report, buffers, tile, light, *slotOrFlag, all);
+        checkNeed(report, tile, light, entry, all, levels);
+        checkSlot(report, buffers, tile, entry.light, entry.slotOrFlag, all);
     } else {
-        report.findings.add("tile %zu: light %u has flag %x", tile, light, *slotOrFlag);
+        report.findings.add("tile %zu: light %u has flag %x", tile, entry.light, entry.slotOrFlag);
     }
 }
 
@@ -98,14 +112,11 @@ ShadowReport checkFinalLists(const PixelGrid& grid, const std::vector<LightModel
     for (std::uint32_t tileY = 0; tileY < grid.tilesY; ++tileY) {
         for (std::uint32_t tileX = 0; tileX < grid.tilesX; ++tileX) {
             const std::size_t tile = std::size_t(tileY) * grid.tilesX + tileX;
-            const std::vector<FinalEntry> entries = finalEntries(buffers, tile);
-            for (const std::uint32_t light : earlyLights(buffers, tile)) {
-                if (light >= lights.size()) continue;  // checkStructure tells
-                std::optional<std::uint32_t> slotOrFlag;
-                for (const FinalEntry& entry : entries)
-                    if (entry.light == light) slotOrFlag = entry.slotOrFlag;
-                checkPair(report, buffers, tile, light, voters(grid, tileX, tileY, lights[light], input),
-                          input.levels(), slotOrFlag, mayEvaluate);
+            for (const FinalEntry& entry : finalEntries(buffers, tile)) {
+                if (entry.light >= lights.size()) continue;  // checkStructure tells
+                const LightModel& light = lights[entry.light];
+                checkPair(report, buffers, tile, light, entry, voters(grid, tileX, tileY, light, input), input.levels(),
+                          mayEvaluate);
             }
         }
     }

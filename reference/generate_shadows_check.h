@@ -4,9 +4,11 @@
 // Source: the specification, Phase 4, Overflow, and "Stored visibility is perceptual".
 //
 // What, for every light of a tile's early list: the tile's voting pixels (in the light's influence) each have an
-// interval of acceptable values (generate_shadows.h). An absent light needs 0 to be acceptable everywhere, ALL_LIT the
+// interval of acceptable values (generate_shadows.h). ALL_UNLIT needs 0 to be acceptable everywhere, ALL_LIT the
 // largest; a slot needs each voting pixel's value in its interval, and not surely all dark or all lit. EVALUATE stands
-// for a slot where the pool is full. Pixels that only may vote bind nothing by themselves.
+// for a slot where the pool is full. Pixels that only may vote bind nothing by themselves; a light that no pixel votes
+// on may have either flag. Filter::PcssShared decides on a slot before it filters. So where a tile has pixels that do
+// not vote, all lit may be stored in a slot, and EVALUATE may stand for all dark or all lit.
 //
 // Limits: early lists are taken as they are (find_lights_accurate.h checks them); tiles without list space have none.
 
@@ -23,7 +25,7 @@ struct ShadowReport {
     std::size_t bytes = 0;           ///< pixels of slots compared
     std::size_t exactBytes = 0;      ///< of them, where one value alone was acceptable and it was there
     std::size_t wrongBytes = 0;
-    std::size_t absent = 0, allLit = 0, slots = 0, evaluate = 0;  ///< (tile, light) pairs by their fate
+    std::size_t allUnlit = 0, allLit = 0, slots = 0, evaluate = 0;  ///< (tile, light) pairs by their fate
     [[nodiscard]] double ambiguousShare() const { return pairs ? double(ambiguousPairs) / double(pairs) : 0.0; }
     [[nodiscard]] double looseShare() const { return pairs ? double(loosePairs) / double(pairs) : 0.0; }
 };

@@ -44,6 +44,8 @@ std::uint32_t filterNumber(Filter filter) {
             return gpu::kFilterPcss;
         case Filter::Host:
             return gpu::kFilterHost;
+        case Filter::PcssShared:
+            return gpu::kFilterPcssShared;
     }
     return 0;
 }

@@ -45,24 +45,22 @@ void checkSpans(StructureReport& report, const ListBuffers& buffers) {
     }
 }
 
-void checkAscending(Findings& findings, const char* list, std::size_t tile, const std::vector<std::uint32_t>& lights,
+void checkAscending(Findings& findings, std::size_t tile, const std::vector<std::uint32_t>& lights,
                     std::size_t lightCount) {
     for (std::size_t i = 0; i < lights.size(); ++i) {
         if (lights[i] >= lightCount)
-            findings.add("tile %zu: %s list names light %u of %zu", tile, list, lights[i], lightCount);
+            findings.add("tile %zu: early list names light %u of %zu", tile, lights[i], lightCount);
         if (i > 0 && lights[i] <= lights[i - 1])
-            findings.add("tile %zu: %s list has light %u after light %u", tile, list, lights[i], lights[i - 1]);
+            findings.add("tile %zu: early list has light %u after light %u", tile, lights[i], lights[i - 1]);
     }
 }
 
-void checkFinal(StructureReport& report, const ListBuffers& buffers, std::size_t tile, std::size_t lightCount,
+void checkFinal(StructureReport& report, const ListBuffers& buffers, std::size_t tile,
                 const std::vector<std::uint32_t>& early, std::map<std::uint32_t, std::size_t>& slotOwner) {
     bool evaluates = hasNoListSpace(buffers, tile);
     std::vector<std::uint32_t> lights;
     for (const FinalEntry& entry : finalEntries(buffers, tile)) {
         lights.push_back(entry.light);
-        if (!std::binary_search(early.begin(), early.end(), entry.light))
-            report.findings.add("tile %zu: final light %u is not in the early list", tile, entry.light);
         if (entry.slotOrFlag == gpu::kSlotEvaluate) {
             evaluates = true;
             ++report.evaluateEntries;
@@ -73,17 +71,17 @@ void checkFinal(StructureReport& report, const ListBuffers& buffers, std::size_t
                                     entry.slotOrFlag, buffers.visibilitySlots);
             const auto [owner, fresh] = slotOwner.emplace(entry.slotOrFlag, tile);
             if (!fresh) report.findings.add("tiles %zu and %zu share slot %u", owner->second, tile, entry.slotOrFlag);
-        } else if (entry.slotOrFlag != gpu::kSlotAllLit) {
+        } else if (entry.slotOrFlag != gpu::kSlotAllLit && entry.slotOrFlag != gpu::kSlotAllUnlit) {
             report.findings.add("tile %zu, light %u: flag %x", tile, entry.light, entry.slotOrFlag);
         }
     }
-    checkAscending(report.findings, "final", tile, lights, lightCount);
+    if (lights != early) report.findings.add("tile %zu: its final list is not parallel to its early list", tile);
     const bool marked = (buffers.finalCounts[tile] & gpu::kFinalEvaluateBit) != 0;
     report.evaluateTiles += marked;
     if (marked != evaluates)
         report.findings.add("tile %zu %s the evaluate bit", tile, marked ? "must not have" : "lacks");
     const std::uint32_t count = buffers.finalCounts[tile] & gpu::kFinalCountMask;
-    if (!hasNoListSpace(buffers, tile) && count > early.size())
+    if (count != early.size())
         report.findings.add("tile %zu: %u final entries from %zu early ones", tile, count, early.size());
 }
 
@@ -147,8 +145,8 @@ StructureReport checkStructure(const ListBuffers& buffers, std::size_t lightCoun
         if (!hasNoListSpace(buffers, tile) && count > reservedEntries(buffers, tile))
             report.findings.add("tile %zu: %u early entries in a span of %u", tile, count,
                                 reservedEntries(buffers, tile));
-        checkAscending(report.findings, "early", tile, early, lightCount);
-        if (buffers.finalCounts.size() == tiles) checkFinal(report, buffers, tile, lightCount, early, slotOwner);
+        checkAscending(report.findings, tile, early, lightCount);
+        if (buffers.finalCounts.size() == tiles) checkFinal(report, buffers, tile, early, slotOwner);
     }
     return report;
 }

@@ -8,8 +8,8 @@
 // gpu_interface/packing.h.
 //
 // What: a span [SlotID, SlotID + reserved) per tile, where reserved is the approximate count, the early count or a
-// fixed number, rounded up to whole early words. The early list keeps three 10-bit indices per word from SlotID / 3 on;
-// the final list one word per entry from SlotID on.
+// fixed number, rounded up to whole early words. The early list keeps three 10-bit indices per word from SlotID / 3 on.
+// The final list is parallel to it: one word from SlotID on per entry of the early list, in the same order.
 //
 // Limits: counts and flags only; whether the right lights are listed is checked by the rooms of phases 2 to 4.
 
@@ -32,8 +32,9 @@ struct ListBuffers {
     std::span<const std::uint32_t> finalList;  ///< empty: phase 4 has not run
     std::span<const std::uint32_t> finalCounts;
     std::span<const std::uint32_t> visibility;
-    std::uint32_t listEntries = 0;      ///< capacity
-    std::uint32_t visibilitySlots = 0;  ///< capacity
+    std::uint32_t listEntries = 0;                  ///< capacity
+    std::uint32_t visibilitySlots = 0;              ///< capacity
+    std::uint32_t lightLists = gpu::kListsByPixel;  ///< who writes the early lists
     std::uint32_t reservation = gpu::kReserveApproximate;
     std::uint32_t fixedEntries = 0;                          ///< for kReserveFixed
     std::uint32_t visibilityBits = gpu::kMaxVisibilityBits;  ///< of a pixel in a slot
@@ -61,8 +62,9 @@ struct StructureReport {
     std::size_t evaluateTiles = 0;  ///< tiles with kFinalEvaluateBit
 };
 /// Spans are disjoint, in the pool and multiples of three; lights are ascending, unique and below `lightCount`; slots
-/// are unique over the frame and below capacity; flags are ALL_LIT or EVALUATE; the final list's lights are in the
-/// early list; kFinalEvaluateBit is set exactly where a tile has an EVALUATE entry, or no list space.
+/// are unique over the frame and below capacity; flags are ALL_LIT, ALL_UNLIT or EVALUATE; the final list has the early
+/// list's lights, or none where there is no list space; kFinalEvaluateBit is set exactly where a tile has an EVALUATE
+/// entry, or no list space.
 StructureReport checkStructure(const ListBuffers& buffers, std::size_t lightCount);
 
 /// kEvaluateTiles: a GpuEvaluateHead and then tile coordinates (y << 16 | x). Holds exactly the tiles with

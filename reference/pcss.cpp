@@ -9,6 +9,7 @@ namespace gnomon::reference {
 namespace {
 
 constexpr double kMaxPieces = 64;
+constexpr double kOnCentrePx = 1e-9;
 constexpr double kPiecePx = 0.02;  // a filter radius known to less is not split further
 
 /// How far aside blockers may lie, see pcss.h.
@@ -59,13 +60,16 @@ public:
           region_(regionOf(view_, plane, input.sourceRadius)) {}
 
     [[nodiscard]] Visibility run() const;
+    [[nodiscard]] PcssSearch search(Interval spreadMetres) const;
+    [[nodiscard]] Visibility filtered(Interval radiusPx) const;
 
 private:
-    [[nodiscard]] SearchTap searchTap(int index) const;
+    /// `spread` in the units of the region.
+    [[nodiscard]] SearchTap searchTap(int index, Interval spread) const;
     [[nodiscard]] SearchTexel searchTexel(Verdict lit, Interval aside, Interval deviceDepth) const;
     [[nodiscard]] SearchAlternative fourTexels(Interval aside, int firstX, int firstY) const;
-    [[nodiscard]] Visibility filtered(Interval meanDepth) const;
-    [[nodiscard]] Visibility filterAtRadius(Interval radius) const;
+    [[nodiscard]] Interval radiusPxOf(Interval meanDepth) const;
+    [[nodiscard]] Visibility filterAtRadius(Interval radius, int taps) const;
     [[nodiscard]] Visibility filterTap(TapPosition at) const;
     [[nodiscard]] bool hasFaces() const { return input_.views.size() == gpu::kPointLightFaces; }
     /// Does the position stay where its own face can answer? Others than point lights always do.
@@ -106,16 +110,19 @@ SearchAlternative Pcss::fourTexels(Interval aside, int firstX, int firstY) const
     return texels;
 }
 
-SearchTap Pcss::searchTap(int index) const {
+SearchTap Pcss::searchTap(int index, Interval spread) const {
     SearchTap tap;
     const Interval share = rounded((index + 0.5) / input_.taps.search);
-    const Interval aside = share * share * region_.search;
-    const TapPosition at = tapPosition(view_, plane_, input_.directions[index], aside);
+    const Interval radius = share * share * (region_.search + spread);
+    const Interval aside = max(radius - spread, 0.0);
+    const TapPosition at = tapPosition(view_, plane_, input_.directions[index], radius);
     const Verdict staying = stays(at);
     if (staying != Verdict::Never) {
         const TapPosition kept = clamped(at);
-        const TexelRange across = texelsOf(kept.xPx - 0.5, view_.xPx, view_.widthPx - 1);
-        const TexelRange down = texelsOf(kept.yPx - 0.5, view_.yPx, view_.heightPx - 1);
+        // Of a footprint that begins right on a texel's centre, the one before is as good.
+        const auto first = [](Interval px) { return Interval(px.lo - 0.5 - kOnCentrePx, px.hi - 0.5); };
+        const TexelRange across = texelsOf(first(kept.xPx), view_.xPx, view_.widthPx - 1);
+        const TexelRange down = texelsOf(first(kept.yPx), view_.yPx, view_.heightPx - 1);
         for (int y = down.from; y <= down.to; ++y)
             for (int x = across.from; x <= across.to; ++x) tap.alternatives.push_back(fourTexels(aside, x, y));
     }
@@ -150,9 +157,8 @@ Visibility Pcss::filterTap(TapPosition at) const {
     return result;
 }
 
-Visibility Pcss::filterAtRadius(Interval radius) const {
+Visibility Pcss::filterAtRadius(Interval radius, int taps) const {
     Visibility sum = kDark;
-    const int taps = input_.taps.filter;
     for (int i = 0; i < taps; ++i) {
         const Interval share = rounded(std::sqrt((i + 0.5) / taps), 10);
         const Visibility tap = filterTap(tapPosition(view_, plane_, input_.directions[i], share * radius));
@@ -163,29 +169,43 @@ Visibility Pcss::filterAtRadius(Interval radius) const {
 }
 
 /// All taps share one radius, so an interval of radii is looked at in pieces.
-Visibility Pcss::filtered(Interval meanDepth) const {
-    const Interval texel = 1.0 / rounded(region_.largestScale);
-    const Interval radius = min(max(region_.at(meanDepth), texel), max(region_.widest, texel));
-    const double widthPx = radius.width() * region_.largestScale;
-    const int pieces = static_cast<int>(std::clamp(std::ceil(widthPx / kPiecePx), 1.0, kMaxPieces));
+Visibility Pcss::filtered(Interval radiusPx) const {
+    const int pieces = static_cast<int>(std::clamp(std::ceil(radiusPx.width() / kPiecePx), 1.0, kMaxPieces));
     Visibility result = kNone;
     for (int i = 0; i < pieces; ++i) {
-        const double step = radius.width() / pieces;
-        result = merge(result, filterAtRadius({radius.lo + i * step, radius.lo + (i + 1) * step}));
+        const double step = radiusPx.width() / pieces;
+        const Interval piece = {radiusPx.lo + i * step, radiusPx.lo + (i + 1) * step};
+        const int all = input_.taps.filter;
+        const TapRange taps = input_.tapsByRadius ? tapsForRadius(all, piece) : TapRange{all, all};
+        for (int count = taps.from; count <= taps.to; ++count)
+            result = merge(result, filterAtRadius(piece / rounded(region_.largestScale), count));
     }
     return result;
 }
 
-Visibility Pcss::run() const {
+Interval Pcss::radiusPxOf(Interval meanDepth) const {
+    const Interval texel = 1.0 / rounded(region_.largestScale);
+    const Interval radius = min(max(region_.at(meanDepth), texel), max(region_.widest, texel));
+    return radius * rounded(region_.largestScale);
+}
+
+PcssSearch Pcss::search(Interval spreadMetres) const {
+    const Interval spread = view_.orthographic ? spreadMetres : spreadMetres / plane_.linearDepth;
     std::vector<SearchTap> taps;
-    for (int i = 0; i < input_.taps.search; ++i) taps.push_back(searchTap(i));
+    for (int i = 0; i < input_.taps.search; ++i) taps.push_back(searchTap(i, spread));
     const SearchOutcome outcome = searchOutcome(taps);
+    PcssSearch result = {outcome.mayBeDark, outcome.mayBeLit, outcome.mayBePartial, {}};
+    if (outcome.mayBePartial) result.radiusPx = radiusPxOf(rounded(outcome.meanDepth, 2.0 * input_.taps.search + 8));
+    return result;
+}
+
+Visibility Pcss::run() const {
+    const PcssSearch found = search(0.0);
     Visibility result = kNone;
-    if (outcome.mayBeDark) result = merge(result, kDark);
-    if (outcome.mayBeLit) result = merge(result, kLit);
+    if (found.mayBeDark) result = merge(result, kDark);
+    if (found.mayBeLit) result = merge(result, kLit);
     if (result.min == 0 && result.max == 1) return result;
-    if (outcome.mayBePartial)
-        result = merge(result, filtered(rounded(outcome.meanDepth, 2.0 * input_.taps.search + 8)));
+    if (found.mayBePartial) result = merge(result, filtered(found.radiusPx));
     return result;
 }
 
@@ -201,23 +221,33 @@ std::vector<DiskDirection> diskDirections(std::uint32_t x, std::uint32_t y, std:
         cosine = -sine;
         sine = before;
     }
-    // Intervals would grow with every turn, as boxes do that are turned and boxed again. An error's length does not;
-    // each step adds its roundings.
-    constexpr double kGoldenCosine = -0.73736888f, kGoldenSine = 0.67549029f;
-    constexpr double kStepError = 4 * kFloatRoundoff;
-    double error = cosine.width() + sine.width(), c = cosine.middle(), s = sine.middle();
+    // Intervals would grow with the turn, as boxes do that are turned and boxed again. An error's length does not.
+    const double error = cosine.width() + sine.width() + 8 * kFloatRoundoff, c = cosine.middle(), s = sine.middle();
+    const double golden = kPi * (3 - std::sqrt(5.0));
     std::vector<DiskDirection> result;
-    for (int i = 0; i < count; ++i, error += kStepError) {
-        result.push_back({within(c, error), within(s, error)});
-        const double before = c;
-        c = c * kGoldenCosine - s * kGoldenSine;
-        s = before * kGoldenSine + s * kGoldenCosine;
+    for (int i = 0; i < count; ++i) {
+        const double x = std::cos(i * golden), y = std::sin(i * golden);
+        result.push_back({within(c * x - s * y, error), within(s * x + c * y, error)});
     }
     return result;
 }
 
+TapRange tapsForRadius(int most, Interval radiusPx) {
+    const Interval wanted = double(most) * (rounded(5.0 / 12.0) + radiusPx * radiusPx * (1.0 / 32.0));
+    const auto taps = [&](double value) { return std::min(static_cast<int>(std::min(value, 64.0)) + 1, most); };
+    return {taps(wanted.lo), taps(wanted.hi)};
+}
+
 Visibility pcssAt(const PcssInput& input, const ReceiverPlane& plane) {
     return Pcss(input, plane).run();
+}
+
+PcssSearch pcssSearchAt(const PcssInput& input, const ReceiverPlane& plane, Interval spreadMetres) {
+    return Pcss(input, plane).search(spreadMetres);
+}
+
+Visibility pcssFilterAt(const PcssInput& input, const ReceiverPlane& plane, Interval radiusPx) {
+    return Pcss(input, plane).filtered(radiusPx);
 }
 
 }  // namespace gnomon::reference

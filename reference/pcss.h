@@ -20,6 +20,9 @@
 //   which in the search counts as four, against the depth that the receiver's plane has in that direction.
 // In all comparisons the receiver's plane is limited, see depthOfPlane().
 //
+// The parts stand alone, too, for a search that several receivers share (pcss_quad.h). Such a search is made from their
+// middle. It reaches farther by their distance from it, and a texel counts as if it were nearer by as much.
+//
 // Limits: intervals throughout; blocker_search.h says what becomes of texels that are too close to call.
 
 #include <array>
@@ -41,6 +44,13 @@ struct DiskDirection {
 };
 std::vector<DiskDirection> diskDirections(std::uint32_t x, std::uint32_t y, std::uint32_t turn, int count);
 
+/// How many filter taps a penumbra takes whose taps follow its radius in texels: 5/12 of them at 0, 1/32 more per
+/// square texel, rounded down to whole ones and one more, at most all of them. Rounding may turn that: first and last.
+struct TapRange {
+    int from = 1, to = 1;
+};
+TapRange tapsForRadius(int most, Interval radiusPx);
+
 struct PcssInput {
     std::span<const ShadowViewModel> views;  ///< of the light: one, or six faces
     std::span<const AtlasCopy> atlases;
@@ -48,7 +58,19 @@ struct PcssInput {
     Interval sourceRadius;
     PcssTapCounts taps;
     std::span<const DiskDirection> directions;  ///< at least as many as the larger number of taps
+    bool tapsByRadius = false;                  ///< see tapsForRadius(); else all of them
 };
 Visibility pcssAt(const PcssInput& input, const ReceiverPlane& plane);
+
+/// What a search alone comes to.
+struct PcssSearch {
+    bool mayBeDark = false, mayBeLit = false;
+    bool mayBePartial = false;
+    Interval radiusPx;  ///< then: of the filter, in texels of the finer axis
+};
+/// `spreadMetres`: how far the receivers lie from their middle, which `plane` is of.
+PcssSearch pcssSearchAt(const PcssInput& input, const ReceiverPlane& plane, Interval spreadMetres);
+/// The filter alone.
+Visibility pcssFilterAt(const PcssInput& input, const ReceiverPlane& plane, Interval radiusPx);
 
 }  // namespace gnomon::reference

@@ -59,7 +59,7 @@ Light randomLight(Random& random, const CameraSetup& camera, const LightSetup& s
 /// In turn, so that the random numbers are the same whatever the filters.
 void takeFilter(Light& light, std::uint32_t index, const LightSetup& setup) {
     std::vector<Filter> filters;
-    for (const Filter filter : {Filter::Hard, Filter::Pcf, Filter::Pcss, Filter::Host})
+    for (const Filter filter : {Filter::Hard, Filter::Pcf, Filter::Pcss, Filter::Host, Filter::PcssShared})
         if ((setup.filters & only(filter)) != 0) filters.push_back(filter);
     if (filters.empty()) return;
     const auto count = static_cast<std::uint32_t>(filters.size());

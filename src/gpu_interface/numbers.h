@@ -49,7 +49,8 @@ GNOMON_CONSTANT GNOMON_UINT kEarlyIndicesPerWord = 3u;
 GNOMON_CONSTANT GNOMON_UINT kMaxVisibilityBits = 8u;  // of a pixel in a slot: 8, or 4
 GNOMON_CONSTANT GNOMON_UINT kMinVisibilityBits = 4u;
 GNOMON_CONSTANT GNOMON_UINT kDefaultListEntriesPerTile = 8u;
-GNOMON_CONSTANT GNOMON_UINT kDefaultVisibilitySlotsPerTile = 8u;
+// The paper has 8. Four are 31.6 MiB, and enough for 7.5 shadowed lights per tile in the courtyard, which take 2.2.
+GNOMON_CONSTANT GNOMON_UINT kDefaultVisibilitySlotsPerTile = 4u;
 // Flags that stand in place of a 22-bit VisibilitySlotID. Slots are below the lowest of them.
 GNOMON_CONSTANT GNOMON_UINT kSlotAllLit = 0x3FFFFFu;
 GNOMON_CONSTANT GNOMON_UINT kSlotAllUnlit = 0x3FFFFEu;

@@ -57,9 +57,9 @@ float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius, 
     return visibility;
 }
 
-// A narrow penumbra needs fewer taps: 5/12 of them for a radius of 0, and 1/32 more per square texel.
+// A narrow penumbra needs fewer taps: a third of them for a radius of 0, and 1/32 more per square texel.
 uint tapsForRadius(uint most, float radiusPx) {
-    precise float wanted = float(most) * (5.0 / 12.0 + (1.0 / 32.0) * (radiusPx * radiusPx));
+    precise float wanted = float(most) * (1.0 / 3.0 + (1.0 / 32.0) * (radiusPx * radiusPx));
     return min(uint(min(wanted, 64.0)) + 1u, most);
 }
 

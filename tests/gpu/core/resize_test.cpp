@@ -66,7 +66,7 @@ TEST_F(Resize, MakesOnlyTheBuffersWhoseSizeChanges) {
             std::set<std::string> buffers;
         } cases[] = {
             {"nothing", first, {}},
-            {"lists", longer, {"early_light_list", "final_light_list"}},
+            {"lists", longer, {"early_light_list", "final_light_list", "list_tiles", "queued_pairs"}},
             {"slots", more, {"visibility"}},
             {"views", views, {"shadow_views"}},
             {"bounds", bounds, {"shadow_bounds", "shadow_bounds_cells"}},

@@ -51,6 +51,8 @@ TEST_F(TimelineTest, HoldsRowsOfHostAndLibraryInOrder) {
         const std::unique_ptr<Timeline> timeline = makeTimeline(context, {});
         Shot shot = {.timeline = timeline.get(), .hostRows = true};
         shot.settings.shadowBounds = true;
+        shot.settings.lightLists = LightLists::Pixel;
+        shot.settings.filters = only(Filter::PcssShared);
         const std::unique_ptr<View> view = makeView(context, smallView());
         Frames frames(device, scene, 2);
         for (int i = 0; i < 3; ++i) {
@@ -58,13 +60,22 @@ TEST_F(TimelineTest, HoldsRowsOfHostAndLibraryInOrder) {
             frames.wait();
             const auto rows = timeline->rows(number);
             expectInOrder(rows);
-            ASSERT_THAT(namesOf(rows), ElementsAre("gbuffer", "hierarchical_depth", "find_lights_approximate",
-                                                   "find_lights_accurate", "shadowmaps", "shadow_bounds",
-                                                   "generate_shadows", "lighting", "gather_statistics"));
-            const Phase phases[] = {
-                Phase::Host,      Phase::HierarchicalDepth, Phase::FindLightsApproximate, Phase::FindLightsAccurate,
-                Phase::Host,      Phase::ShadowBounds,      Phase::GenerateShadows,       Phase::Lighting,
-                Phase::Statistics};
+            ASSERT_THAT(namesOf(rows),
+                        ElementsAre("gbuffer", "hierarchical_depth", "find_lights_approximate", "find_lights_accurate",
+                                    "shadowmaps", "shadow_bounds", "classify_pairs", "search_pairs", "filter_pairs",
+                                    "lighting", "gather_statistics"));
+            const Phase phases[] = {Phase::Host,
+                                    Phase::HierarchicalDepth,
+                                    Phase::FindLightsApproximate,
+                                    Phase::FindLightsAccurate,
+                                    Phase::Host,
+                                    Phase::ShadowBounds,
+                                    Phase::GenerateShadows,
+                                    Phase::GenerateShadows,
+                                    Phase::GenerateShadows,
+                                    Phase::Lighting,
+                                    Phase::Statistics};
+            ASSERT_EQ(rows.size(), std::size(phases));
             for (std::size_t r = 0; r < rows.size(); ++r) EXPECT_EQ(rows[r].phase, phases[r]) << rows[r].name;
             EXPECT_EQ(rows[0].kind, RowKind::Drawing);
             EXPECT_EQ(rows[1].kind, RowKind::Compute);
@@ -110,7 +121,7 @@ TEST_F(TimelineTest, CountsRowsWithoutSpace) {
             frames.wait();
             EXPECT_THAT(namesOf(timeline->rows(number)),
                         ElementsAre("gbuffer", "hierarchical_depth", "find_lights_approximate"));
-            EXPECT_EQ(timeline->lostRows(number), 5u) << "each frame counts anew";
+            EXPECT_EQ(timeline->lostRows(number), 4u) << "each frame counts anew";
         }
         EXPECT_EQ(timeline->lostRows(100), 0u);
         // Beyond the space there is no row, and ending none is nothing.
@@ -159,7 +170,7 @@ TEST_F(TimelineTest, KnowsTheLastFramesAlone) {
             frames.wait();
             for (std::uint64_t number = 0; number <= last; ++number) {
                 const bool known = number + inFlight > last;
-                EXPECT_EQ(timeline->rows(number).size(), known ? 5u : 0u) << number << " of " << last;
+                EXPECT_EQ(timeline->rows(number).size(), known ? 4u : 0u) << number << " of " << last;
             }
             EXPECT_THAT(timeline->rows(last + 1), IsEmpty());
             EXPECT_THAT(timeline->rows(last + inFlight), IsEmpty());

@@ -48,8 +48,10 @@ ViewDesc roomFor(const FrameInput& input, std::uint32_t entriesPerTile) {
 TEST_P(CapacityTest, NumberOfLights) {
     FrameInput input = floorFrame();
     input.settings.filters = only(Filter::Hard);
-    for (const ListReservation reservation : {ListReservation::Approximate, ListReservation::Accurate}) {
-        input.settings.listReservation = reservation;
+    for (const LightLists lists : {LightLists::Froxel, LightLists::Pixel}) {
+        input.settings.lightLists = lists;
+        input.settings.listReservation =
+            lists == LightLists::Froxel ? ListReservation::Approximate : ListReservation::Accurate;
         Rig rig(device(), {}, roomFor(input, 1026));
         ASSERT_TRUE(rig.ok());
         for (const std::uint32_t count : {0u, 1u, 2u, 3u, 4u, 31u, 32u, 33u, 1023u, 1024u, 1025u, 1400u}) {
@@ -103,6 +105,7 @@ bool listed(const FrameResult& result, std::uint32_t hostLight) {
 // Below the floor: casting lights are dropped, unless the rule is off or the floor is subsurface.
 TEST_P(CapacityTest, LightsThatFacesLookAwayFrom) {
     FrameInput input = floorFrame();
+    input.settings.lightLists = LightLists::Pixel;
     input.lights = everywhere(2);
     for (Light& light : input.lights) {
         light.position[0] = light.position[2] = 0;
@@ -130,6 +133,7 @@ TEST_P(CapacityTest, LightAndReceiverMasks) {
     FrameInput input = floorFrame();
     Rig rig(device(), {}, roomFor(input, 30));
     ASSERT_TRUE(rig.ok());
+    input.settings.lightLists = LightLists::Pixel;
     input.lights = everywhere(9);
     input.lightViews = sharedViews(input.lights);
     for (std::uint32_t i = 0; i < 9; ++i) input.lights[i].mask = static_cast<std::uint8_t>(i == 8 ? 0 : 1u << i);

@@ -1,6 +1,7 @@
 // Hierarchical depth and phases 2 and 3 against the oracle.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -14,14 +15,21 @@ namespace {
 class ListsTest : public GpuTest {};
 GNOMON_ON_EVERY_DEVICE(ListsTest);
 
-constexpr ListReservation kReservations[] = {ListReservation::Approximate, ListReservation::Accurate,
-                                             ListReservation::Fixed};
+struct Way {
+    LightLists lists;
+    ListReservation reservation;
+};
+constexpr Way kWays[] = {
+    {LightLists::Pixel, ListReservation::Approximate}, {LightLists::Pixel, ListReservation::Accurate},
+    {LightLists::Pixel, ListReservation::Fixed},       {LightLists::Froxel, ListReservation::Approximate},
+    {LightLists::Froxel, ListReservation::Accurate},   {LightLists::Froxel, ListReservation::Fixed}};
 
 TEST_P(ListsTest, DepthAndLightsOfARoom) {
     FrameInput input = makeRoomFrame({.widthPx = 136, .heightPx = 88});
     input.settings.fixedListEntriesPerTile = 50;
-    for (const ListReservation reservation : kReservations) {
-        SCOPED_TRACE(int(reservation));
+    for (const auto& [lists, reservation] : kWays) {
+        SCOPED_TRACE(std::to_string(int(lists)) + " " + std::to_string(int(reservation)));
+        input.settings.lightLists = lists;
         input.settings.listReservation = reservation;
         Rig rig(device(), {}, viewDescFor(input));
         ASSERT_TRUE(rig.ok());
@@ -39,7 +47,11 @@ TEST_P(ListsTest, DepthAndLightsOfARoom) {
 
 // Every size of subgroup that the device can run gives the same lists.
 TEST_P(ListsTest, EverySubgroupSize) {
-    const FrameInput input = makeRoomFrame({.seed = 2});
+    RoomSetup setup{.seed = 2};
+    setup.lights.filters = kAllBuiltInFilters;
+    setup.lights.castingShare = 0.8;
+    setup.lights.maxSourceRadius = 0.3;
+    const FrameInput input = makeRoomFrame(setup);
     const renderer::DeviceInfo& info = device().vulkan().info();
     std::vector<std::vector<DecodedEntry>> first;
     for (std::uint32_t size = std::max(4u, info.minSubgroupSize); size <= std::min(64u, info.maxSubgroupSize);
@@ -53,6 +65,43 @@ TEST_P(ListsTest, EverySubgroupSize) {
         EXPECT_EQ(first, decodeFinalLists(result));
     }
     EXPECT_FALSE(first.empty());
+}
+
+/// The entries of casting lights that are not dark all over their tile.
+std::vector<std::vector<DecodedEntry>> seenShadows(const FrameInput& input, const FrameResult& result) {
+    std::vector<std::vector<DecodedEntry>> tiles = decodeFinalLists(result);
+    for (std::vector<DecodedEntry>& tile : tiles)
+        std::erase_if(tile, [&](const DecodedEntry& entry) {
+            return entry.flag == gpu::kSlotAllUnlit || !input.lights[entry.hostLight].casts;
+        });
+    return tiles;
+}
+
+// Phase 2's own lists are what it counts and gives its groups, and phase 3's are a part of them that leaves out
+// darkness alone.
+TEST_P(ListsTest, ByFroxelAndByPixel) {
+    RoomSetup setup{.seed = 21, .widthPx = 136, .heightPx = 72};
+    setup.lights.filters = kAllBuiltInFilters;
+    setup.lights.castingShare = 0.8;
+    FrameInput input = makeRoomFrame(setup);
+    Rig rig(device(), {}, viewDescFor(input));
+    ASSERT_TRUE(rig.ok());
+    input.settings.lightLists = LightLists::Froxel;
+    const FrameResult byFroxel = rig.run(input);
+    input.settings.lightLists = LightLists::Pixel;
+    const FrameResult byPixel = rig.run(input);
+    EXPECT_EQ(byFroxel.approximateCounts, byPixel.approximateCounts);
+    const auto froxelLists = decodeEarlyLists(byFroxel), pixelLists = decodeEarlyLists(byPixel);
+    std::size_t fewer = 0;
+    for (std::size_t tile = 0; tile < froxelLists.size(); ++tile) {
+        EXPECT_EQ(froxelLists[tile].size(), byPixel.approximateCounts[tile]);
+        EXPECT_TRUE(std::includes(froxelLists[tile].begin(), froxelLists[tile].end(), pixelLists[tile].begin(),
+                                  pixelLists[tile].end()))
+            << "tile " << tile;
+        fewer += froxelLists[tile].size() - pixelLists[tile].size();
+    }
+    EXPECT_GT(fewer, 20u);
+    EXPECT_EQ(seenShadows(input, byFroxel), seenShadows(input, byPixel));
 }
 
 // Without face normals they come from depth; without receiver flags every mask meets.

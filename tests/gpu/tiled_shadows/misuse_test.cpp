@@ -65,7 +65,7 @@ std::vector<SettingsCase> badSettings() {
     return {
         {"filters", [](S& s) { s.filters = 1u << 4; }},
         {"filters", [](S& s) { s.filters |= 0x80000000u; }},
-        {"generateShadowsSpirv", [](S& s) { s.filters |= only(Filter::Host); }},  // this context has none
+        {"filterPairsSpirv", [](S& s) { s.filters |= only(Filter::Host); }},  // this context has none
         {"pcfRadius", [](S& s) { s.pcfRadius = 0; }},
         {"pcfRadius", [](S& s) { s.pcfRadius = 4; }},
         {"pcssPresetCount", [](S& s) { s.pcssPresetCount = 0; }},
@@ -201,7 +201,7 @@ TEST_P(MisuseTest, Settings) {
         expectRefused(context->prepare(frame.settings), cases[i].word);
         EXPECT_EQ(context->pipelineCount(), pipelines);
         // The settings by themselves are right where a context may have a provider of the host's.
-        const bool knowsContext = std::strcmp(cases[i].word, "generateShadowsSpirv") == 0;
+        const bool knowsContext = std::strcmp(cases[i].word, "filterPairsSpirv") == 0;
         if (!knowsContext) expectRefused(checkSettings(frame.settings), cases[i].word);
         EXPECT_EQ(checkSettings(frame.settings).ok(), knowsContext);
     }

@@ -18,7 +18,8 @@ struct Made {
     Filter filter;
     std::uint8_t preset;
 };
-constexpr Made kMade[] = {{Filter::Hard, 0}, {Filter::Pcf, 0}, {Filter::Pcss, 0}, {Filter::Pcss, 1}};
+constexpr Made kMade[] = {{Filter::Hard, 0}, {Filter::Pcf, 0},        {Filter::Pcss, 0},
+                          {Filter::Pcss, 1}, {Filter::PcssShared, 0}, {Filter::PcssShared, 1}};
 
 void put(const reference::Vec3& v, float out[3]) {
     out[0] = static_cast<float>(v.x);
@@ -69,7 +70,7 @@ FrameInput mixedRoom() {
 /// What a light's visibility is made by.
 using Kind = std::tuple<LightType, Filter, int>;
 Kind kindOf(const Light& light) {
-    return {light.type, light.filter, light.filter == Filter::Pcss ? light.pcssPreset : 0};
+    return {light.type, light.filter, isSoft(light.filter) ? light.pcssPreset : 0};
 }
 
 /// Slots by what made them.
@@ -95,7 +96,8 @@ TEST_P(MixedFiltersTest, EveryLightHasItsOwn) {
         EXPECT_LE(checked.shadows.looseShare(), 0.001);
         EXPECT_GT(checked.shadows.exactBytes, checked.shadows.bytes / 2);
         const std::map<Kind, std::size_t> slots = slotsByKind(input, result);
-        EXPECT_EQ(slots.size(), 3u * 4u);  // three types; hard, percentage closer, two soft ones
+        EXPECT_EQ(slots.size(),
+                  3u * 6u);  // three types; hard, percentage closer, two soft ones each searched alone and shared
         for (const auto& [kind, count] : slots)
             EXPECT_GT(count, 2u) << "type " << int(std::get<0>(kind)) << " filter " << int(std::get<1>(kind))
                                  << " preset " << std::get<2>(kind);
@@ -130,6 +132,8 @@ TEST_P(MixedFiltersTest, OthersAreFound) {
         EXPECT_GT(swapped(Filter::Pcf, Filter::Hard), 10u);
         EXPECT_GT(swapped(Filter::Pcf, Filter::Pcss), 10u);
         EXPECT_GT(swapped(Filter::Pcss, Filter::Pcf), 10u);
+        EXPECT_GT(swapped(Filter::Pcss, Filter::PcssShared), 10u);
+        EXPECT_GT(swapped(Filter::PcssShared, Filter::Pcss), 10u);
         EXPECT_GT(findingsAfter([=](Model& light) {
                       if (light.type == type) light.pcssPreset ^= 1;
                   }),
@@ -146,7 +150,7 @@ TEST_P(MixedFiltersTest, NeighboursChangeNothing) {
     ASSERT_TRUE(rig.ok());
     const auto mixed = decodeFinalLists(rig.run(input));
     std::size_t compared = 0;
-    for (const Filter filter : {Filter::Hard, Filter::Pcf, Filter::Pcss}) {
+    for (const Filter filter : {Filter::Hard, Filter::Pcf, Filter::Pcss, Filter::PcssShared}) {
         SCOPED_TRACE(int(filter));
         FrameInput one = input;
         useFilter(one, filter);  // all lights, and pipelines without the others' code

@@ -93,7 +93,9 @@ TEST_P(PropertyTest, NoLightIsEverLost) {
         if (!fullRun() && done >= kLeastSeeds && std::chrono::steady_clock::now() - start > kLongEnough) break;
         SCOPED_TRACE("seed " + std::to_string(seed));
         FrameInput input = randomFrame(seed);
-        useFilter(input, seed % 2 == 0 ? Filter::Pcss : Filter::Hard);
+        constexpr Filter kFilters[] = {Filter::PcssShared, Filter::Hard, Filter::Pcss};
+        useFilter(input, kFilters[seed % 3]);
+        input.settings.lightLists = seed % 5 < 3 ? LightLists::Froxel : LightLists::Pixel;
         input.settings.pcssPresets[0] = kPcssLow;
         input.settings.listReservation = seed % 2 == 0 ? ListReservation::Approximate : ListReservation::Accurate;
         Rig& rig = seed % 2 == 0 ? approximate : accurate;
@@ -123,11 +125,15 @@ TEST_P(PropertyTest, RandomOverflow) {
         desc.maxShadowViews = 6;
         const auto reservation = static_cast<ListReservation>(random.below(3));
         const std::uint32_t bits = random.chance(0.5) ? 4 : 8;
+        const Filter filter = seed % 2 != 0 ? Filter::PcssShared : Filter::Pcf;
+        const LightLists lists = random.chance(0.5) ? LightLists::Froxel : LightLists::Pixel;
         desc.visibilityBits = bits;
         Rig rig(device(), {}, desc);
         ASSERT_TRUE(rig.ok());
         for (std::uint64_t i = 0; i < 3; ++i) {
             FrameInput input = randomFrame(seed * 100 + i);
+            useFilter(input, filter);
+            input.settings.lightLists = lists;
             input.settings.visibilityBits = bits;
             input.settings.listReservation = reservation;
             input.settings.fixedListEntriesPerTile = 10;

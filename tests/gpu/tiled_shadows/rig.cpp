@@ -13,10 +13,21 @@ using renderer::ImageDesc;
 constexpr std::uint32_t kExtraX = 24, kExtraY = 16;  // pixels of the images beyond the view
 constexpr Access kAll{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
 constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-constexpr const char* kDeviceBuffers[] = {"tile_group_light_masks", "tile_depth_ranges", "tile_light_slot_ids",
-                                          "approximate_counts",     "early_light_list",  "early_counts",
-                                          "final_light_list",       "final_counts",      "visibility",
-                                          "evaluate_tiles",         "counters",          "shadow_bounds"};
+constexpr const char* kDeviceBuffers[] = {"tile_group_light_masks",
+                                          "tile_depth_ranges",
+                                          "tile_light_slot_ids",
+                                          "approximate_counts",
+                                          "early_light_list",
+                                          "early_counts",
+                                          "final_light_list",
+                                          "final_counts",
+                                          "visibility",
+                                          "evaluate_tiles",
+                                          "counters",
+                                          "list_tiles",
+                                          "pair_queues",
+                                          "queued_pairs",
+                                          "shadow_bounds"};
 
 void barrier(VkCommandBuffer commands, Access before, Access after) {
     VkMemoryBarrier2 all{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
@@ -104,6 +115,7 @@ reference::ListBuffers FrameResult::lists() const {
     out.visibility = visibility;
     out.listEntries = listCapacity;
     out.visibilitySlots = slotCapacity;
+    out.lightLists = settings.lightLists == LightLists::Froxel ? gpu::kListsByFroxel : gpu::kListsByPixel;
     out.reservation = settings.listReservation == ListReservation::Approximate ? gpu::kReserveApproximate
                       : settings.listReservation == ListReservation::Accurate  ? gpu::kReserveAccurate
                                                                                : gpu::kReserveFixed;
@@ -329,6 +341,9 @@ void Rig::decode(FrameResult& r) const {
     r.finalList = contents("final_light_list");
     r.visibility = contents("visibility");
     r.evaluateTiles = contents("evaluate_tiles");
+    r.listTiles = contents("list_tiles");
+    r.queuedPairs = contents("queued_pairs");
+    std::memcpy(&r.pairs, contents("pair_queues").data(), sizeof(r.pairs));
     const std::vector<std::uint32_t> bounds = contents("shadow_bounds");
     r.shadowBounds.resize(bounds.size() / 2);
     std::memcpy(r.shadowBounds.data(), bounds.data(), bounds.size() * 4);

@@ -50,7 +50,9 @@ struct FrameResult {
     std::vector<float> depthRanges;
     std::vector<std::uint32_t> tileLightMasks;
     std::vector<std::uint32_t> groupMasks, slotIds, approximateCounts, earlyList, earlyCounts, finalList, finalCounts,
-        visibility, evaluateTiles;        ///< per-tile ones: of the active tiles, the others whole
+        visibility, evaluateTiles;  ///< per-tile ones: of the active tiles, the others whole
+    std::vector<std::uint32_t> listTiles, queuedPairs;
+    gpu::GpuPairHead pairs{};
     std::vector<gpu::vec2> shadowBounds;  ///< least and greatest depths; see src/shadow_bounds
     gpu::GpuCounters counters{};
     FrameStatistics statistics;

@@ -1,5 +1,8 @@
 // Deferred shadows equal shadows evaluated while lighting: every stored visibility has 8 bits (or 4), and both ways
 // return the same ones, so the pictures may differ by the rounding of one sum of lights alone: 1/255.
+#include <algorithm>
+#include <cmath>
+
 #include "image/renderer/harness.h"
 
 namespace gnomon::renderer::image_test {
@@ -17,7 +20,10 @@ struct FilterCase {
 constexpr FilterCase kHard = {"hard", Filter::Hard}, kPcf1 = {"pcf1", Filter::Pcf, 1}, kPcf3 = {"pcf3", Filter::Pcf, 3},
                      kPcss = {"pcss", Filter::Pcss}, kPcssMany = {"pcss 16+24", Filter::Pcss, 1, kPcssMedium},
                      kPcssFourBits = {"pcss, 4 bits", Filter::Pcss, 1, kFewTaps, 4},
-                     kPcfFourBits = {"pcf1, 4 bits", Filter::Pcf, 1, kFewTaps, 4};
+                     kPcfFourBits = {"pcf1, 4 bits", Filter::Pcf, 1, kFewTaps, 4},
+                     kShared = {"pcss-shared", Filter::PcssShared},
+                     kSharedMany = {"pcss-shared 16+24", Filter::PcssShared, 1, kPcssMedium},
+                     kSharedFourBits = {"pcss-shared, 4 bits", Filter::PcssShared, 1, kFewTaps, 4};
 
 RendererDesc withFilter(const FilterCase& filter) {
     RendererDesc desc = smallDesc();
@@ -46,10 +52,12 @@ void everyScene(const Device& device, const FilterCase& filter, std::uint32_t sc
 
 TEST_P(DeferredIsInline, EverySceneWithItsOwnLights) {
     Worst worst;
-    if (thorough())
-        everyScene(device(), kPcss, 0, worst);
-    else
-        for (const char* scene : {"boxes", "sundial"}) compareBoth(device(), scene, 0, kPcss, worst);
+    for (const FilterCase& filter : {kPcss, kShared}) {
+        if (thorough())
+            everyScene(device(), filter, 0, worst);
+        else
+            for (const char* scene : {"boxes", "sundial"}) compareBoth(device(), scene, 0, filter, worst);
+    }
     if (fullRun())
         for (const FilterCase& filter : {kHard, kPcf1, kPcf3}) everyScene(device(), filter, 0, worst);
     worst.report(device(), "deferred against inline, own lights");
@@ -62,6 +70,7 @@ TEST_P(DeferredIsInline, OtherFilters) {
         compareBoth(device(), "boxes", 0, kHard, worst);
         compareBoth(device(), "sundial", 0, kPcf1, worst);
         compareBoth(device(), "masked", 0, kPcssMany, worst);
+        compareBoth(device(), "masked", 0, kSharedMany, worst);
     }
     worst.report(device(), "deferred against inline, other filters");
 }
@@ -83,6 +92,7 @@ TEST_P(DeferredIsInline, FaceNormalsFromDepth) {
 TEST_P(DeferredIsInline, SlotsOfFourBits) {
     Worst worst;
     compareBoth(device(), "sundial", 64, kPcssFourBits, worst);
+    compareBoth(device(), "sundial", 64, kSharedFourBits, worst);
     if (thorough()) {
         compareBoth(device(), "courtyard", 0, kPcssFourBits, worst);
         compareBoth(device(), "boxes", 0, kPcfFourBits, worst);
@@ -90,12 +100,12 @@ TEST_P(DeferredIsInline, SlotsOfFourBits) {
     worst.report(device(), "deferred against inline, 4 bits");
 }
 
-// Lights of all three types take turns with three filters and two presets of taps, in one frame.
+// Lights of all three types take turns with four filters and two presets of taps, in one frame.
 TEST_P(DeferredIsInline, FiltersMixedInOneFrame) {
     Worst worst;
     const View3d view = builtin("sundial", 64);
     RendererDesc desc = withFilter(kPcss);
-    desc.frame.filters = {Filter::Hard, Filter::Pcf, Filter::Pcss, Filter::Pcss};
+    desc.frame.filters = {Filter::Hard, Filter::PcssShared, Filter::Pcf, Filter::Pcss, Filter::Pcss};
     desc.frame.shadows.pcssPresets = {kFewTaps, PcssTaps{8, 12}};
     desc.frame.shadows.pcssPresetCount = 2;
     const Frame mixed = expectDeferredIsInline(device(), "mixed filters", view, desc, worst, true);
@@ -128,6 +138,7 @@ TEST_P(DeferredIsInline, With64And256LightsMore) {
 TEST_P(DeferredIsInline, PatternPerFrame) {
     const View3d view = builtin("boxes");
     RendererDesc desc = withFilter(kPcss);
+    desc.frame.filters = {Filter::Pcss, Filter::PcssShared};
     desc.frame.shadows.patternPerFrame = true;
     Renderer inlined(device(), view.scene, desc, pipelinesOf(device()));
     Renderer deferred(device(), view.scene, desc, pipelinesOf(device()));
@@ -143,6 +154,37 @@ TEST_P(DeferredIsInline, PatternPerFrame) {
     worst.report(device(), "pattern per frame");
 }
 
+// Channels that differ by more than the rounding of a sum of lights. A step of one stored visibility is more than that.
+std::size_t differing(const HdrPicture& a, const HdrPicture& b) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i)
+        count += std::abs(a.rgba[i] - b.rgba[i]) > 1e-5f * std::max(a.rgba[i], b.rgba[i]);
+    return count;
+}
+
+// One search for four pixels: passes make it once for a tile, and shaders of the host anew for every pixel. Both find
+// the same, with every size of subgroup and in extents that cut the four pixels.
+TEST_P(DeferredIsInline, SharedSearchesToTheBit) {
+    const View3d view = builtin("sundial", 32);
+    const DeviceInfo& info = device().info();
+    HdrPicture first;
+    for (std::uint32_t size = std::max(4u, info.minSubgroupSize); size <= info.maxSubgroupSize; size *= 2) {
+        SCOPED_TRACE("subgroups of " + std::to_string(size));
+        RendererDesc desc = withFilter(kShared);
+        desc.frame.widthPx = 131;
+        desc.frame.heightPx = 77;
+        desc.subgroupSize = size;
+        Renderer renderer(device(), view.scene, desc, pipelinesOf(device(), size));
+        const HdrPicture inlined = draw(renderer, view.camera, ShadowMode::Inline).linear;
+        const HdrPicture deferred = draw(renderer, view.camera, ShadowMode::Deferred).linear;
+        ASSERT_EQ(inlined.rgba.size(), deferred.rgba.size());
+        EXPECT_EQ(differing(inlined, deferred), 0u);
+        if (first.rgba.empty()) first = deferred;
+        EXPECT_EQ(differing(first, deferred), 0u);
+    }
+    EXPECT_FALSE(first.rgba.empty());
+}
+
 // Bounds of the shadowmaps end searches, and change no bit; not even where frames without them came in between.
 TEST_P(DeferredIsInline, ShadowBoundsChangeNothing) {
     for (const char* scene : {"sundial", "courtyard"}) {
@@ -150,6 +192,7 @@ TEST_P(DeferredIsInline, ShadowBoundsChangeNothing) {
         const View3d view = builtin(scene, 32);
         SCOPED_TRACE(view.name);
         RendererDesc desc = withFilter(kPcss);
+        desc.frame.filters = {Filter::Pcss, Filter::PcssShared};
         desc.frame.shadows.shadowBounds = false;
         Renderer plain(device(), view.scene, desc, pipelinesOf(device()));
         const HdrPicture expected = draw(plain, view.camera, ShadowMode::Deferred).linear;

@@ -26,6 +26,8 @@ const Change kChanges[] = {
          f.shadows.pcssPresets[0] = {6, 9};
      }},
     {"slots of 4 bits", [](FrameSettings& f) { f.shadows.visibilityBits = 4; }},
+    {"shared searches", [](FrameSettings& f) { f.filters = {Filter::PcssShared}; }},
+    {"lists by pixel", [](FrameSettings& f) { f.shadows.lightLists = LightLists::Pixel; }},
     {"list space by phase 2", [](FrameSettings& f) { f.shadows.listReservation = ListReservation::Approximate; }},
     {"one depth for all texels",
      [](FrameSettings& f) {
@@ -73,8 +75,8 @@ TEST_P(Switching, EveryPictureIsThatOfAFreshRenderer) {
         EXPECT_EQ(kept.counts().resizes, resizes);
         // A few of them where a handful must do.
         const std::string name = change.name;
-        if (!thorough() && name != "hard" && name != "slots of 4 bits" && name != "wider cube faces" &&
-            name != "smaller")
+        if (!thorough() && name != "hard" && name != "shared searches" && name != "lists by pixel" &&
+            name != "slots of 4 bits" && name != "wider cube faces" && name != "smaller")
             continue;
         const Frame expected = drawOnce(device(), view, fresh, ShadowMode::Deferred);
         EXPECT_EQ(actual.linear.width, fresh.frame.widthPx);

@@ -64,7 +64,9 @@ TEST_P(Variants, RaggedExtents) {
         return "columns+64 " + std::to_string(width) + "x" + std::to_string(height);
     };
     // One renderer: smaller extents use a part of its images.
-    Renderer renderer(device(), view.scene, smallDesc(211, 117), pipelinesOf(device()));
+    RendererDesc desc = smallDesc(211, 117);
+    desc.frame.filters = {Filter::PcssShared, Filter::Pcss};  // odd extents cut the pixels that share a search
+    Renderer renderer(device(), view.scene, desc, pipelinesOf(device()));
     const std::pair<std::uint32_t, std::uint32_t> extents[] = {{211, 117}, {1, 1},  {131, 2}, {9, 7},
                                                                {65, 63},   {1, 97}, {8, 8},   {64, 64}};
     for (const auto& [width, height] : extents) {
@@ -91,6 +93,7 @@ TEST_P(Variants, SubgroupSizes) {
     for (std::uint32_t size = info.minSubgroupSize; size <= info.maxSubgroupSize; size *= 2) {
         RendererDesc desc = smallDesc();
         desc.subgroupSize = size;
+        desc.frame.filters = {Filter::Pcss, Filter::PcssShared};
         expectDeferredIsInline(device(), "columns+64 subgroups of " + std::to_string(size), columns64(), desc, worst,
                                true);
     }
@@ -103,6 +106,9 @@ constexpr std::uint32_t kAmple = 1u << 16;
 
 RendererDesc ampleDesc(ListReservation reservation) {
     RendererDesc desc = smallDesc();
+    desc.frame.filters = {Filter::PcssShared, Filter::Pcss};
+    // With LightLists::Froxel it is the same as Approximate.
+    if (reservation == ListReservation::Accurate) desc.frame.shadows.lightLists = LightLists::Pixel;
     desc.frame.shadows.listReservation = reservation;
     desc.frame.shadows.fixedListEntriesPerTile = 96;  // more than any tile of these scenes has
     desc.listEntries = desc.visibilitySlots = kAmple;

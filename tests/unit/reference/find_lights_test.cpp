@@ -199,7 +199,7 @@ TEST_F(Frame, StructureErrorsAreFound) {
     EXPECT_EQ(errors(spoilt), 1u);
     spoilt = honest;
     std::uint32_t* entry = spoilt.findEntry(true);
-    *entry = gpu::packFinalEntry(gpu::finalLightIndex(*entry), gpu::kSlotAllUnlit);
+    *entry = gpu::packFinalEntry(gpu::finalLightIndex(*entry), gpu::kSlotEvaluate - 1);  // beyond every pool
     EXPECT_EQ(errors(spoilt), 1u);
     *entry = gpu::packFinalEntry(gpu::finalLightIndex(*entry), gpu::kSlotEvaluate);  // without the tile's bit
     EXPECT_EQ(errors(spoilt), 1u);
@@ -207,13 +207,18 @@ TEST_F(Frame, StructureErrorsAreFound) {
     EXPECT_EQ(errors(spoilt), 1u);
     *entry = gpu::packFinalEntry(gpu::finalLightIndex(*entry), honest.slots - 1);  // another entry's slot
     EXPECT_EQ(errors(spoilt), 1u);
+    *entry = gpu::packFinalEntry(gpu::finalLightIndex(*entry) ^ 1, gpu::kSlotAllLit);  // another light's place
+    EXPECT_EQ(errors(spoilt), 1u);
+    spoilt = honest;
+    --spoilt.finalCounts[tile];  // a light goes missing: the lists are no longer as long, nor the same
+    EXPECT_EQ(errors(spoilt), 2u);
 }
 
 TEST_F(Frame, TilesWithoutSpaceMustBeEvaluated) {
     const std::size_t tile = fullTile();
     HonestBuffers spoilt = honest;
     spoilt.slotIds[tile] = gpu::kNoListSpace;
-    EXPECT_EQ(checkStructure(spoilt.view(), frame.lights.size()).findings.errors, 1u);
+    EXPECT_EQ(checkStructure(spoilt.view(), frame.lights.size()).findings.errors, 2u);  // its bit lacks, its count not
     spoilt.finalCounts[tile] = gpu::kFinalEvaluateBit;
     const StructureReport report = checkStructure(spoilt.view(), frame.lights.size());
     EXPECT_TRUE(report.findings.ok()) << report.findings.text();

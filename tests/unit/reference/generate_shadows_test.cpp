@@ -312,7 +312,7 @@ TEST_F(FinalLists, HonestOnesPass) {
     EXPECT_TRUE(report.findings.ok()) << report.findings.text();
     EXPECT_GT(report.slots, 10u);
     EXPECT_GT(report.allLit, 10u);
-    EXPECT_GT(report.absent, 3u);
+    EXPECT_GT(report.allUnlit, 3u);
     EXPECT_GT(report.bytes, 500u);
     EXPECT_LT(report.ambiguousShare(), 0.03);
 }
@@ -337,17 +337,10 @@ TEST_F(FinalLists, PlantedErrorsAreFound) {
     entry = spoilt.findEntry(false);
     *entry = gpu::packFinalEntry(gpu::finalLightIndex(*entry), 0);  // ALL_LIT turned into some slot
     EXPECT_GE(check(spoilt).findings.errors, 1u);
-    spoilt = honest;
-    for (std::uint32_t& count : spoilt.finalCounts)
-        if ((count & gpu::kFinalCountMask) > 0) {
-            --count;  // a light that is not dark goes missing
-            break;
-        }
-    EXPECT_EQ(check(spoilt).findings.errors, 1u);
 }
 
 TEST_F(FinalLists, SlotsOfFourBits) {
-    for (const Filter filter : {Filter::Pcf, Filter::Pcss}) {
+    for (const Filter filter : {Filter::Pcf, Filter::Pcss, Filter::PcssShared}) {
         useFilter(frame.lights, filter);
         frame.shadows.visibilityBits = 4;
         HonestBuffers half = makeHonestBuffers(frame, expected);

@@ -7,6 +7,7 @@
 #include "gpu_interface/packing.h"
 #include "reference/find_lights_approximate.h"
 #include "reference/generate_shadows_check.h"
+#include "reference/pcss_quad.h"
 #include "reference/test_scene.h"
 #include "reference/test_shadows.h"
 
@@ -78,12 +79,13 @@ struct HonestBuffers {
         buffers.visibilityBits = visibilityBits;
         return buffers;
     }
-    /// The first final entry that is a slot, or the first that is a flag; null if there is none.
+    /// The first final entry that is a slot, or the first that is ALL_LIT; null if there is none.
     [[nodiscard]] std::uint32_t* findEntry(bool slot) {
         for (std::size_t tile = 0; tile < slotIds.size(); ++tile)
             for (std::uint32_t e = 0; e < (finalCounts[tile] & gpu::kFinalCountMask); ++e) {
                 std::uint32_t& word = finalList[slotIds[tile] + e];
-                if (isSlot(gpu::finalSlotOrFlag(word)) == slot) return &word;
+                const std::uint32_t slotOrFlag = gpu::finalSlotOrFlag(word);
+                if (slot ? isSlot(slotOrFlag) : slotOrFlag == gpu::kSlotAllLit) return &word;
             }
         return nullptr;
     }
@@ -102,7 +104,7 @@ inline void fillTile(HonestBuffers& out, const TestFrame& frame, std::uint32_t t
     out.approximateCounts.push_back(static_cast<std::uint32_t>(listed.size()) + 1);
     out.finalList.resize(slotId + reserved);
     out.earlyList.resize((slotId + reserved) / gpu::kEarlyIndicesPerWord);
-    std::uint32_t casting = 0, entries = 0;
+    std::uint32_t casting = 0;
     for (std::uint32_t e = 0; e < listed.size(); ++e) {
         const LightModel& light = frame.lights[listed[e]];
         casting += light.casts;
@@ -110,20 +112,24 @@ inline void fillTile(HonestBuffers& out, const TestFrame& frame, std::uint32_t t
         const std::uint32_t bits = frame.shadows.visibilityBits, perWord = 32 / bits;
         std::vector<std::uint32_t> slot(gpu::visibilitySlotWords(bits));
         bool dark = true, lit = true;
+        QuadFindings quads(light, frame.grid, frame.shadows);
         for (const auto [x, y] : frame.grid.tilePixels(tileX, tileY)) {
             if (inInfluence(light, frame.grid.at(x, y)) == Verdict::Never) continue;
-            const std::uint32_t q = storedVisibility(light, frame.grid.at(x, y), frame.shadows).max;
+            const std::uint32_t q = storedVisibility(light, frame.grid.at(x, y), frame.shadows, quads.at(x, y)).max;
             dark = dark && q == 0;
             lit = lit && q == gpu::visibilityLevels(bits);
             const std::uint32_t lane = gpu::mortonLane(x % 8, y % 8);
             slot[lane / perWord] |= q << (bits * (lane % perWord));
         }
-        if (dark) continue;
-        if (!lit) out.visibility.insert(out.visibility.end(), slot.begin(), slot.end());
-        out.finalList[slotId + entries++] = gpu::packFinalEntry(listed[e], lit ? gpu::kSlotAllLit : out.slots++);
+        std::uint32_t slotOrFlag = dark ? gpu::kSlotAllUnlit : gpu::kSlotAllLit;
+        if (!dark && !lit) {
+            out.visibility.insert(out.visibility.end(), slot.begin(), slot.end());
+            slotOrFlag = out.slots++;
+        }
+        out.finalList[slotId + e] = gpu::packFinalEntry(listed[e], slotOrFlag);
     }
     out.earlyCounts.push_back(static_cast<std::uint32_t>(listed.size()) | casting << gpu::kEarlyCastingShift);
-    out.finalCounts.push_back(entries);
+    out.finalCounts.push_back(static_cast<std::uint32_t>(listed.size()));
 }
 
 inline HonestBuffers makeHonestBuffers(const TestFrame& frame, const std::vector<TileLights>& expected) {

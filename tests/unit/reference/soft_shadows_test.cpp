@@ -3,6 +3,7 @@
 
 #include "reference/cascades.h"
 #include "reference/generate_shadows.h"
+#include "reference/pcss_quad.h"
 #include "reference/test_scene.h"
 #include "reference/test_shadows.h"
 
@@ -92,8 +93,11 @@ TEST(SoftShadows, PenumbraOfAnEdgeUnderALamp) {
             setup.reversed = reversed;
             setup.infiniteFar = reversed;
             const double radius = 0.3;
-            const Stage stage(boardOverFloor(height), lamp(LightType::Spot, {0, 4, 0}, {0, -1, 0}, radius), setup);
-            expectPenumbra(stage, radius * height / (4 - height));
+            Stage stage(boardOverFloor(height), lamp(LightType::Spot, {0, 4, 0}, {0, -1, 0}, radius), setup);
+            for (const Filter filter : {Filter::Pcss, Filter::PcssShared}) {
+                stage.model.filter = filter;
+                expectPenumbra(stage, radius * height / (4 - height));
+            }
         }
     }
 }
@@ -269,6 +273,124 @@ TEST(Cascades, MarginAndBlend) {
     EXPECT_EQ(fit({0, -4.1, 0}).holds, Verdict::Never);
     EXPECT_EQ(fit({17.9 / 12, 0, 0}).blend.hi, 0.0);
     EXPECT_NEAR(fit({0, 0, 19.0 / 12}).blend.middle(), 0.5, 1e-4);
+}
+
+// --- One search for four pixels --------------------------------------------------------------------------------------
+
+/// A quad of pixels on the floor, `apart` metres from each other, under a board's edge.
+struct Quad {
+    Stage stage;
+    std::array<Pixel, 4> pixels;
+    explicit Quad(double x, double apart = 0.01, LightType type = LightType::Spot, double y = 0)
+        : stage(boardOverFloor(1.0), lamp(type, {0, 4, 0}, {0, -1, 0}, 0.3), {.viewSizePx = 400}) {
+        stage.model.filter = Filter::PcssShared;
+        for (std::uint32_t i = 0; i < 4; ++i) {
+            Pixel& pixel = pixels[i];
+            pixel.x = 6 + (i & 1u);
+            pixel.y = 10 + (i >> 1);
+            pixel.background = false;
+            pixel.position = {x + apart * ((i & 1u) - 0.5), y, 0.1 + apart * ((i >> 1) - 0.5)};
+            pixel.positionError = 1e-7;
+            pixel.hasFaceNormal = true;
+            pixel.faceNormal = {0, 1, 0};
+        }
+    }
+    [[nodiscard]] QuadFinding find() const {
+        return findQuad(stage.model, {&pixels[0], &pixels[1], &pixels[2], &pixels[3]}, stage.input);
+    }
+    [[nodiscard]] bool ownAlone() const {
+        const QuadFinding found = find();
+        return found.mayBeOwn && !found.mayBeDark && !found.mayBeLit && found.radiiPx.empty() && !found.unknown;
+    }
+    [[nodiscard]] bool shares() const { return !find().mayBeOwn; }
+};
+
+// The radius that a quad finds is the penumbra's: R h / (4 - h) at the floor, seen from 4 m through the map.
+TEST(SharedSearch, FindsDarkLitAndTheRadius) {
+    const double half = 0.3 * 1.0 / 3.0;
+    EXPECT_TRUE(Quad(-1.8).find().mayBeDark);  // as far as the search reaches
+    EXPECT_TRUE(Quad(-1.8).find().radiiPx.empty());
+    EXPECT_TRUE(Quad(3 * half).find().mayBeLit);
+    EXPECT_TRUE(Quad(3 * half).find().radiiPx.empty());
+    const Quad quad(0);
+    const QuadFinding found = quad.find();
+    EXPECT_FALSE(found.mayBeOwn || found.mayBeDark || found.mayBeLit || found.unknown);
+    ASSERT_EQ(found.radiiPx.size(), 1u);
+    const double texels = half / 4 * quad.stage.input.views[0].pxPerMetreX;
+    EXPECT_NEAR(found.radiiPx[0].middle(), texels, 0.05 * texels);
+    EXPECT_LT(found.radiiPx[0].width(), 0.01);
+    for (const double px : {found.radiiPx[0].lo, found.radiiPx[0].hi})
+        EXPECT_NEAR(px * 1024, std::round(px * 1024), 0.01);
+}
+
+// From as far aside as the farthest of the four, a search sees what that one sees.
+TEST(SharedSearch, ReachesAsFarAsItsPixelsLieApart) {
+    const double half = 0.1, apart = 0.2;
+    const Quad wide(1.4 * half, apart);  // its middle is lit, and its left pixels lie in the penumbra
+    Quad narrow(1.4 * half, 0.001);
+    EXPECT_FALSE(narrow.find().mayBeOwn);
+    EXPECT_TRUE(narrow.find().mayBeLit);
+    EXPECT_FALSE(wide.find().mayBeLit);
+    EXPECT_FALSE(wide.find().radiiPx.empty());
+}
+
+TEST(SharedSearch, SharesInOnePlaneAndOneView) {
+    EXPECT_TRUE(Quad(0).shares());
+    Quad quad(0);
+    quad.pixels[3].position.y = 0.02;  // a step
+    EXPECT_TRUE(quad.ownAlone());
+    quad.pixels[3].offPlaneMetres = 0.02;  // which its depth is too coarse to tell
+    EXPECT_TRUE(quad.shares());
+    quad = Quad(0);
+    quad.pixels[1].subsurface = true;
+    EXPECT_TRUE(quad.ownAlone());
+    for (Pixel& pixel : quad.pixels) pixel.subsurface = true;
+    EXPECT_TRUE(quad.shares());
+    // A pixel that does not ask takes no part, whatever it is.
+    quad = Quad(0);
+    quad.pixels[2].position.y = 1.5;
+    quad.pixels[2].faceNormal = {0, -1, 0};
+    EXPECT_TRUE(quad.shares());
+    quad.pixels[2].faceNormal = {0, 1, 0};
+    EXPECT_TRUE(quad.ownAlone());
+    quad.pixels[2].background = true;
+    EXPECT_TRUE(quad.shares());
+    // Across the seam of two faces, which lies over x = 4 below a point light 4 m up.
+    EXPECT_TRUE(Quad(4.0, 0.01, LightType::Point).ownAlone());
+    EXPECT_TRUE(Quad(3.9, 0.01, LightType::Point).shares());
+    // Too close to call: both.
+    Quad close(4.005, 0.01, LightType::Point);
+    EXPECT_TRUE(close.find().mayBeOwn);
+    EXPECT_TRUE(close.find().mayBeLit || close.find().mayBeDark || !close.find().radiiPx.empty());
+}
+
+// A flat quad is decided by a quarter of how far it reaches.
+TEST(SharedSearch, FlatnessIsAQuarter) {
+    // Two pixels that ask, 2 d apart: each lies d from the middle, and d sin(tilt) off its plane.
+    for (const double sine : {0.2, 0.24, 0.26, 0.3}) {
+        Quad quad(0);
+        quad.pixels[2].background = quad.pixels[3].background = true;
+        for (std::size_t i = 0; i < 2; ++i) quad.pixels[i].faceNormal = {-sine, std::sqrt(1 - sine * sine), 0};
+        EXPECT_EQ(quad.shares(), sine < 0.25) << sine;
+        EXPECT_EQ(quad.ownAlone(), sine > 0.25) << sine;
+    }
+}
+
+TEST(SharedSearch, TapsFollowTheRadius) {
+    const auto taps = [](int most, double radius) {
+        const TapRange range = tapsForRadius(most, radius);
+        EXPECT_EQ(range.from, range.to) << radius;
+        return range.from;
+    };
+    EXPECT_EQ(taps(25, 0), 11);  // 10.4
+    EXPECT_EQ(taps(25, 2), 14);  // 13.5
+    EXPECT_EQ(taps(25, 4), 23);  // 22.9
+    EXPECT_EQ(taps(25, 5), 25);  // all
+    EXPECT_EQ(taps(64, 40), 64);
+    EXPECT_EQ(taps(1, 3), 1);
+    const TapRange either = tapsForRadius(24, 0);  // 10 exactly
+    EXPECT_EQ(either.from, 10);
+    EXPECT_EQ(either.to, 11);
 }
 
 TEST(DiskDirections, AreTurnedByPixelAndFrame) {

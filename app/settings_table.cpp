@@ -264,7 +264,7 @@ std::vector<Setting> makeTable() {
          .name = "visibility-slots",
          .key = "visibilitySlots",
          .member = &S::visibilitySlots,
-         .help = "Capacity of the visibility slots; 0: 8 per tile",
+         .help = "Capacity of the visibility slots; 0: 4 per tile",
          .most = kMostPoolEntries});
     add({.group = kPools,
          .name = "most-list-entries",

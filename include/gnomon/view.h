@@ -40,7 +40,8 @@ namespace gnomon {
 struct ViewDesc {
     std::uint32_t maxWidthPx = 3840, maxHeightPx = 2160;  ///< 1 to 16384 each; at most 4,186,127 tiles of 8x8
     std::uint32_t framesInFlight = 2;  ///< 1 to 4: frames the host records before the oldest has finished
-    /// Pools. 0: 8 list entries and 4 slots per shadow tile on average. Capped by the device's largest storage buffer: see MemoryReport.
+    /// Pools. 0: 8 list entries and 4 slots per shadow tile on average. Capped by the device's largest storage buffer:
+    /// see MemoryReport.
     std::uint32_t listEntries = 0;
     std::uint32_t visibilitySlots = 0;
     /// 8 or 4: the bits of the slots that visibilitySlots counts. A frame with other ShadowSettings::visibilityBits has

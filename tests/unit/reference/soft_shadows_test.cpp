@@ -382,15 +382,15 @@ TEST(SharedSearch, TapsFollowTheRadius) {
         EXPECT_EQ(range.from, range.to) << radius;
         return range.from;
     };
-    EXPECT_EQ(taps(25, 0), 11);  // 10.4
-    EXPECT_EQ(taps(25, 2), 14);  // 13.5
-    EXPECT_EQ(taps(25, 4), 23);  // 22.9
+    EXPECT_EQ(taps(25, 0), 9);   // 8.3
+    EXPECT_EQ(taps(25, 2), 12);  // 11.5
+    EXPECT_EQ(taps(25, 4), 21);  // 20.8
     EXPECT_EQ(taps(25, 5), 25);  // all
     EXPECT_EQ(taps(64, 40), 64);
     EXPECT_EQ(taps(1, 3), 1);
-    const TapRange either = tapsForRadius(24, 0);  // 10 exactly
-    EXPECT_EQ(either.from, 10);
-    EXPECT_EQ(either.to, 11);
+    const TapRange either = tapsForRadius(24, 0);  // 8 exactly
+    EXPECT_EQ(either.from, 8);
+    EXPECT_EQ(either.to, 9);
 }
 
 TEST(DiskDirections, AreTurnedByPixelAndFrame) {

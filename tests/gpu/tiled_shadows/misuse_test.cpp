@@ -63,7 +63,7 @@ const float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_
 std::vector<SettingsCase> badSettings() {
     using S = ShadowSettings;
     return {
-        {"filters", [](S& s) { s.filters = 1u << 4; }},
+        {"filters", [](S& s) { s.filters = 1u << gpu::kFilterCount; }},
         {"filters", [](S& s) { s.filters |= 0x80000000u; }},
         {"filterPairsSpirv", [](S& s) { s.filters |= only(Filter::Host); }},  // this context has none
         {"pcfRadius", [](S& s) { s.pcfRadius = 0; }},
@@ -125,7 +125,7 @@ TEST_P(MisuseTest, MemoryReport) {
     ASSERT_TRUE(View::memory(*context, desc, report).ok());
     EXPECT_FALSE(report.poolsCapped);
     EXPECT_EQ(report.listEntries, 480u * 270 * 8);
-    EXPECT_EQ(report.visibilitySlots, 480u * 270 * 8);
+    EXPECT_EQ(report.visibilitySlots, 480u * 270 * 4);
     desc.listEntries = 0xFFFFFFFFu;
     desc.visibilitySlots = 0xFFFFFFFFu;
     ASSERT_TRUE(View::memory(*context, desc, report).ok());

@@ -339,7 +339,7 @@ TEST(BadLight, EachHasItsSentence) {
     sun.sourceRadius = 2, sun.casts = false;  // of a sun without a shadow nobody asks
     EXPECT_TRUE(runLights({sun}).result.ok());
     expectRefused(with(point, [&](Light& l) { l.type = static_cast<LightType>(9); }), "LightType");
-    expectRefused(with(point, [&](Light& l) { l.filter = static_cast<Filter>(4); }), "Filter");
+    expectRefused(with(point, [&](Light& l) { l.filter = static_cast<Filter>(gpu::kFilterCount); }), "Filter");
     expectRefused(with(point, [&](Light& l) { l.pcssPreset = 4; }), "pcssPreset");
 }
 

@@ -29,8 +29,8 @@ Visibility Sampler::soft(std::size_t which, const ReceiverPlane& plane) const {
     // Perspective: metres; orthographic: a tangent. Both came through one rounding to float.
     PcssTapCounts taps = input.pcssPresets[light.pcssPreset];
     if (quad != nullptr) taps.search = (taps.search + 1) / 2;
-    const PcssInput pcss = {views(),    input.atlases,  which, rounded(light.sourceRadius, 1), taps,
-                            directions, quad != nullptr};
+    const PcssInput pcss = {views(), input.atlases, which,          rounded(light.sourceRadius, 1),
+                            taps,    directions,    quad != nullptr};
     if (quad == nullptr) return pcssAt(pcss, plane);
     Visibility result = quad->mayBeOwn ? pcssAt(pcss, plane) : kNone;
     const auto texelsPerUnit = [&](std::size_t view) {

@@ -40,7 +40,7 @@ QuadPixels quadOf(const PixelGrid& grid, std::uint32_t x, std::uint32_t y);
 struct QuadFinding {
     bool mayBeOwn = false;  ///< each pixel searches by itself
     bool mayBeDark = false, mayBeLit = false;
-    bool unknown = false;           ///< anything may come out
+    bool unknown = false;  ///< anything may come out
     struct Radius {
         std::size_t view;  ///< of the light
         Interval px;       ///< of the filter, in texels of that view

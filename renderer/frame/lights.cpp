@@ -57,8 +57,7 @@ std::vector<Light> libraryLights(std::span<const SceneLight> lights, const glm::
         l.biasMetres = statedBias(light, settings).value_or(kBiasMetres);
         l.casts = light.casts;
         l.filter = filterOf(light, i, settings);
-        if (isSoft(l.filter))
-            l.pcssPreset = static_cast<std::uint8_t>(soft++ % settings.shadows.pcssPresetCount);
+        if (isSoft(l.filter)) l.pcssPreset = static_cast<std::uint8_t>(soft++ % settings.shadows.pcssPresetCount);
         out.push_back(l);
     }
     return out;

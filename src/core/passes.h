@@ -31,9 +31,8 @@ enum PassId : std::uint32_t {
 
 using PassDeclaration = const Pass& (*)() noexcept;
 inline constexpr PassDeclaration kPasses[] = {
-    hierarchicalDepthPass, findLightsApproximatePass, findLightsAccuratePass,
-    shadowBoundsPass,      filterTilesPass,           classifyPairsPass,
-    searchPairsPass,       filterPairsPass,           gatherStatisticsPass,
+    hierarchicalDepthPass, findLightsApproximatePass, findLightsAccuratePass, shadowBoundsPass,     filterTilesPass,
+    classifyPairsPass,     searchPairsPass,           filterPairsPass,        gatherStatisticsPass,
 };
 static_assert(std::size(kPasses) == kPassCount);
 

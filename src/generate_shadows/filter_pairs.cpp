@@ -34,7 +34,9 @@ constexpr PassResource kResources[] = {
     {kSetWorking, kBindPairQueues, Access::Indirect},
     {kSetWorking, kBindQueuedPairs, Access::Read},
 };
-constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize, kSpecFilters, kSpecPcfRadius, kSpecPcssPresets, kSpecVisibilityBits, kSpecShadowAtlases, kSpecDepthBias, kSpecFacedAwayIsDark, kSpecShadowViews};
+constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize, kSpecFilters,         kSpecPcfRadius,
+                                             kSpecPcssPresets,  kSpecVisibilityBits,  kSpecShadowAtlases,
+                                             kSpecDepthBias,    kSpecFacedAwayIsDark, kSpecShadowViews};
 constexpr Pass kPass = {"filter_pairs", Phase::GenerateShadows, kSpirv, kResources, kSpecialization};
 
 }  // namespace

@@ -32,7 +32,9 @@ constexpr PassResource kResources[] = {
     {kSetShadowmaps, kBindShadowBounds, Access::Read},
     {kSetWorking, kBindCounters, Access::Write},
 };
-constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize, kSpecFilters, kSpecPcfRadius, kSpecPcssPresets, kSpecVisibilityBits, kSpecShadowAtlases, kSpecDepthBias, kSpecFacedAwayIsDark, kSpecShadowViews};
+constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize, kSpecFilters,         kSpecPcfRadius,
+                                             kSpecPcssPresets,  kSpecVisibilityBits,  kSpecShadowAtlases,
+                                             kSpecDepthBias,    kSpecFacedAwayIsDark, kSpecShadowViews};
 constexpr Pass kPass = {"filter_tiles", Phase::GenerateShadows, kSpirv, kResources, kSpecialization};
 
 }  // namespace

@@ -34,7 +34,9 @@ constexpr PassResource kResources[] = {
     {kSetWorking, kBindPairQueues, Access::Indirect},
     {kSetWorking, kBindQueuedPairs, Access::Write},
 };
-constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize, kSpecFilters, kSpecPcssPresets, kSpecVisibilityBits, kSpecShadowAtlases, kSpecDepthBias, kSpecFacedAwayIsDark, kSpecShadowViews};
+constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize,    kSpecFilters,       kSpecPcssPresets,
+                                             kSpecVisibilityBits,  kSpecShadowAtlases, kSpecDepthBias,
+                                             kSpecFacedAwayIsDark, kSpecShadowViews};
 constexpr Pass kPass = {"search_pairs", Phase::GenerateShadows, kSpirv, kResources, kSpecialization};
 
 }  // namespace

@@ -112,8 +112,8 @@ struct GpuPcssTaps {
 // Where taps of soft shadows lie, in the pattern's axes: tap i is at the golden angle i times. Read with an index that
 // is the same for all lanes.
 struct GpuPcssTap {
-    vec2 filtered;   // times the radius over the square root of their number; evenly spread
-    vec2 searched;   // times the radius over the square of their number; crowded in the middle
+    vec2 filtered;  // times the radius over the square root of their number; evenly spread
+    vec2 searched;  // times the radius over the square of their number; crowded in the middle
 };
 
 // Constants of one frame and view.
@@ -173,7 +173,8 @@ struct GpuCounters {
     uint frameStamp;  // of the host, never changed by a pass: which frame has been counted
 };
 
-// Pairs of one filter and one kind of shadow views, waiting to be evaluated. A pair is named by its place in list space.
+// Pairs of one filter and one kind of shadow views, waiting to be evaluated. A pair is named by its place in list
+// space.
 struct GpuPairQueue {
     uint searchGroupCountX;  // a VkDispatchIndirectCommand: kPairRowGroups,
     uint searchGroupCountY;  // rows in use,

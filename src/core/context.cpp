@@ -80,7 +80,8 @@ Result createLayouts(Context::State& state) {
                                                   kWorkingBindingCount};
     for (std::uint32_t set = 0; set < kSetCount; ++set) {
         VkDescriptorSetLayoutBinding bindings[kListsBindingCount] = {};
-        static_assert(kListsBindingCount >= kShadowmapsBindingCount && kListsBindingCount >= kReceiversBindingCount);
+        static_assert(kListsBindingCount >= kShadowmapsBindingCount && kListsBindingCount >= kReceiversBindingCount &&
+                      kListsBindingCount >= kWorkingBindingCount);
         const bool images = set == kSetReceivers || set == kSetShadowmaps;
         for (std::uint32_t i = 0; i < kCounts[set]; ++i) {
             bindings[i] = {i, images ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, kStages,

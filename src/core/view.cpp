@@ -433,7 +433,6 @@ Result View::beginFrame(const FrameDesc& frame, PrepareReport* report) noexcept 
     inFlight.frameNumber = frame.frameNumber;
     state.frame = constants;
     state.current = index;
-    state.queues = queues;
     state.timeline = frame.timeline;
     state.lastFrame = frame.frameNumber;
     state.anyFrame = true;

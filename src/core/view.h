@@ -46,7 +46,6 @@ struct GNOMON_HIDDEN View::State {
     bool anyFrame = false;         // was begun
     bool growthFailed = false;     // there was no memory for larger pools; not tried again before the next resize
     PassPipelines pipelines;       // of the frame begun last
-    QueueSet queues = 0;           // likewise: those that its lights may fill
     Timeline* timeline = nullptr;  // likewise
     gpu::GpuFrame frame = {};
     BarrierTracker tracker;

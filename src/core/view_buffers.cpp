@@ -112,7 +112,7 @@ ViewSizes viewSizesOf(const DeviceContext& device, const ViewDesc& desc) noexcep
     const std::uint64_t wantedEntries = desc.listEntries != 0 ? desc.listEntries : tiles * kDefaultListEntriesPerTile;
     const std::uint64_t wantedSlots =
         desc.visibilitySlots != 0 ? desc.visibilitySlots : tiles * kDefaultVisibilitySlotsPerTile;
-    const std::uint64_t entries = std::min<std::uint64_t>({wantedEntries, largest / 8, 0x7FFFFFFFu});
+    const std::uint64_t entries = std::min<std::uint64_t>({wantedEntries, largest / 8, kMostListEntries});
     const std::uint64_t slots = std::min<std::uint64_t>({wantedSlots, largest / slotBytes, kMaxVisibilitySlots});
     s.poolsCapped = entries < wantedEntries || slots < wantedSlots;
     // Whole early-list words: what is left of a pool of one or two entries cannot hold a list.

@@ -95,7 +95,7 @@ std::uint32_t stampOf(std::uint64_t frameNumber) {
     return static_cast<std::uint32_t>(frameNumber) ^ 0x474E4F4Du;
 }
 
-// The frame's first commands: the last frame's reads end, counters and the indirect command start afresh.
+// The frame's first commands: the last frame's reads end, counters and indirect commands start afresh.
 void resetFrame(View::State& state, VkCommandBuffer commands) {
     const Functions& vk = state.context->device.vk;
     Recorder recorder = recorderOf(state, commands);

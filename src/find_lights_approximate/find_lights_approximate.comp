@@ -11,10 +11,10 @@
 // - List space for the whole group is reserved with one atomic, from light counts rounded up to whole early-list words.
 //   (Listing 1 sums them before rounding, which lets neighbours overlap.)
 // - The early lists are written right here, and phase 3 is left out (kListsByFroxel). Its tests per pixel would leave
-//   out one light of eight, and cost more than they save: pixels are tested again where they are evaluated. The paper's
+//   out one light of seven, and cost more than they save: pixels are tested again where they are evaluated. The paper's
 //   way, in which phase 3 writes the lists, is a setting (kListsByPixel).
 // Uniformity: the walk goes over the OR of a subgroup's candidates. So subgroup operations are never in divergent flow,
-// and light data are loaded once per subgroup. Subgroups meet in shared memory, with two barriers in all.
+// and light data are loaded once per subgroup. Subgroups meet in shared memory.
 #extension GL_GOOGLE_include_directive : require
 #define GNOMON_LISTS_ACCESS
 #include "vulkan/work_group.glsl"

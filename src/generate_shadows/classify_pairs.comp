@@ -23,7 +23,7 @@
 const uint kPlacesPerLane = kPlacesPerClassifyGroup / kWorkGroupSize;
 
 shared uint counts[kPairQueueCount];  // the group's pairs
-shared uint firsts[kPairQueueCount];  // where they go in queuedPairs
+shared uint firsts[kPairQueueCount];  // where they go in their half of queuedPairs
 
 // Which queue the pair at a place goes to, or none: kPairQueueCount. Words that no tile owns in this frame hold what an
 // earlier one left.
@@ -55,7 +55,6 @@ void makeRoom(uint queue) {
     uint count = counts[queue];
     if (count == 0u) return;
     uint first = 0u;
-    uint begin = 0u;
     if (isSearched(queue)) {
         first = atomicAdd(pairs.queues[queue].searchCount, count);
         uint groups = divideRoundingUp(first + count, kPairsPerSearchGroup);
@@ -63,9 +62,8 @@ void makeRoom(uint queue) {
     } else {
         first = atomicAdd(pairs.queues[queue].filterCount, count);
         atomicMax(pairs.queues[queue].filterGroupCountY, divideRoundingUp(first + count, kPairRowGroups));
-        begin = frame.listCapacity;
     }
-    firsts[queue] = begin + segment + first;
+    firsts[queue] = segment + first;
 }
 
 void main() {
@@ -86,9 +84,8 @@ void main() {
         if (queues[i] == kPairQueueCount) continue;
         uint place = base + i * kWorkGroupSize;
         uint at = firsts[queues[i]] + ranks[i];
-        uint end = isSearched(queues[i]) ? frame.listCapacity : 2u * frame.listCapacity;
-        if (at < end) {
-            queuedPairs[at] = place;
+        if (at < frame.listCapacity) {
+            queuedPairs[at + (isSearched(queues[i]) ? 0u : frame.listCapacity)] = place;
         } else {
             Pair pair = pairAt(place);
             evaluateEntry(place, pair.lightIndex, pair.tile);

@@ -4,8 +4,9 @@
 //
 // Problem: a lighting shader that evaluates shadows keeps its own registers and the filter's alive together.
 // Source: the paper, section 2.4, listing 4. Wholly dark and wholly lit: a flag in the list. Else a slot.
-// Here: light and shadow views are the same for all lanes, so a compiler may keep them in scalar registers.
-// - Dark and lit are decided on the quantised values, by a vote of the pixels that the light reaches.
+// Here: the light, its filter and the kind of its shadow views are the same for all lanes.
+// - Dark and lit are decided on the quantised values, by a vote of the pixels that the light reaches. (With
+//   "pcss_shared" of all pixels; those that it does not reach count as dark.)
 // - Lanes leave their values in shared memory, and one lane per word of the slot packs them.
 // - With "pcss_shared" the search has been made (search_pairs), and what the quads have found lies in the slot. Quads
 //   that need a filter are moved to the front lanes. So a warp ends at once if there are few of them.
@@ -25,7 +26,7 @@ const uint kPixelsPerWord = 32u / kVisibilityBits;
 shared uint stored[kWorkGroupSize];  // by lane, which is the pixel's place in the tile
 shared uint subgroupVotes[kSubgroupCount];
 shared uint pairSlot;
-shared uint searchingQuads;  // sets
+shared uint searchingQuads;  // one bit per quad, in both
 shared uint filteredQuads;
 
 uint wordOf(uint word) {

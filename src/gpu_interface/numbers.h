@@ -129,6 +129,8 @@ GNOMON_CONSTANT GNOMON_UINT kShadowViewsKinds = 3u;     // without "any"
 GNOMON_CONSTANT GNOMON_UINT kPairQueueCount = kFilterCount * kShadowViewsKinds;
 // Work groups over pairs form rows of this many in indirect dispatches.
 GNOMON_CONSTANT GNOMON_UINT kPairRowGroups = 1024u;
+// List space beyond this might need more rows than a dispatch may have, 65535.
+GNOMON_CONSTANT GNOMON_UINT kMostListEntries = 65535u * kPairRowGroups;
 // Places of list space that one work group of classify_pairs takes.
 GNOMON_CONSTANT GNOMON_UINT kPlacesPerClassifyGroup = 512u;
 // Pairs that one work group of search_pairs takes, 16 quads of 2x2 pixels each. Several rounds of them, so that the

@@ -18,9 +18,6 @@
 #include "generate_shadows/pair_queues.glsl"
 #include "visibility/visibility.glsl"
 
-const uint kNoVote = 0u;
-const uint kNotLit = 1u;   // the pixel is not wholly lit
-const uint kNotDark = 2u;  // it is not wholly dark
 const uint kPixelsPerWord = 32u / kVisibilityBits;
 
 shared uint stored[kWorkGroupSize];  // by lane, which is the pixel's place in the tile
@@ -50,15 +47,15 @@ void filterAllPixels(Pair pair, GpuLight light, uint lane) {
     Receiver receiver = receiverAt(pair.tile * kShadowTileSizePx + laneCoordinates(lane));
     vec3 toLight;
     uint level = 0u;
-    uint votes = 0u;
+    uint votes = kNoVote;
     if (receiver.valid && lightReaches(light, receiver.positionWs, receiver.mask, toLight)) {
         level = quantiseVisibility(visibilityWithQuad(light, receiver, toLight, kQuadOwn));
-        votes = (level != kVisibilityLevels ? kNotLit : 0u) | (level != 0u ? kNotDark : 0u);
+        votes = (level != kVisibilityLevels ? kNotLit : kNoVote) | (level != 0u ? kNotDark : kNoVote);
     }
     stored[lane] = level;
     votes = combineVotes(votes);
     uint slot = (votes & kNotDark) == 0u ? kSlotAllUnlit : kSlotAllLit;
-    if (votes == (kNotLit | kNotDark)) {
+    if (votes == kMixed) {
         if (lane == 0u) pairSlot = atomicAdd(counters.visibilitySlots, 1u);
         barrier();
         slot = pairSlot;
@@ -124,7 +121,7 @@ void filterQuads(Pair pair, GpuLight light, uint lane) {
     // The search may have taken for mixed what is not. The slot is spent, but lighting need not read it.
     uint level = stored[lane];
     uint votes = combineVotes((level != kVisibilityLevels ? kNotLit : kNoVote) | (level != 0u ? kNotDark : kNoVote));
-    if (votes != (kNotLit | kNotDark)) {
+    if (votes != kMixed) {
         if (lane == 0u) {
             uint flag = votes == kNotDark ? kSlotAllLit : kSlotAllUnlit;
             finalList[pair.place] = packFinalEntry(pair.lightIndex, flag);

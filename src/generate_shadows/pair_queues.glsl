@@ -6,6 +6,12 @@
 #include "gpu_interface/lists_set.glsl"
 #include "gpu_interface/working_set.glsl"
 
+// How pixels and quads vote on their pair.
+const uint kNoVote = 0u;
+const uint kNotLit = 1u;   // some pixel is not wholly lit
+const uint kNotDark = 2u;  // some pixel is not wholly dark
+const uint kMixed = kNotLit | kNotDark;
+
 struct Pair {
     uint place;       // in list space
     uint lightIndex;

@@ -15,10 +15,6 @@
 #include "generate_shadows/pair_queues.glsl"
 #include "visibility/visibility.glsl"
 
-const uint kNoVote = 0u;
-const uint kNotLit = 1u;   // some pixel is not wholly lit
-const uint kNotDark = 2u;  // some pixel is not wholly dark
-const uint kMixed = kNotLit | kNotDark;
 const uint kPairs = kPairsPerSearchGroup;
 const uint kCodeWords = kQuadsPerTile / 2u;
 
@@ -30,7 +26,7 @@ shared uint firstSlot;
 shared uint firstQueued;
 
 uint voteOf(GpuLight light, QuadSearch quad) {
-    if (quad.reached == 0u) return 0u;
+    if (quad.reached == 0u) return kNoVote;
     // A faded shadow lets some light through, more or less of it.
     if ((light.typeAndFlags & kLightShadowFadesBit) != 0u) return kMixed;
     uint vote = quad.asking < quad.reached ? kNotLit : kNoVote;
@@ -56,7 +52,7 @@ void main() {
     uint first = pairGroup() * kPairs;
     uint count = min(pairs.queues[queue].searchCount, max(frame.listCapacity, segment) - segment);
     if (first >= count) return;
-    if (lane < kPairs) votes[lane] = 0u;
+    if (lane < kPairs) votes[lane] = kNoVote;
     if (lane == 0u) mixedCount = 0u;
     barrier();
     for (uint round = 0u; round < kSearchRounds; ++round) {

@@ -180,8 +180,9 @@ Row rowOf(PassId pass, Filter filter, std::uint32_t kind) {
 std::vector<Row> libraryRows(const Provider& provider) {
     std::vector<Row> rows;
     for (std::uint32_t id = 0; id < kPassCount; ++id) {
-        if (id == kPassSearchPairs || id == kPassFilterPairs) continue;
+        if (id == kPassSearchPairs || id == kPassFilterPairs || id == kPassFindLightsAccurate) continue;
         if (id == kPassFilterTiles && (provider.filters & gpu::kFiltersByTile) == 0) continue;
+        if (id == kPassClassifyPairs && (provider.filters & ~gpu::kFiltersByTile) == 0) continue;
         rows.push_back(rowOf(id, passOf(static_cast<PassId>(id)).name, provider));
     }
     for (const Filter filter : {Filter::Pcss, Filter::PcssShared}) {
@@ -207,6 +208,7 @@ std::vector<Row> rowsOf(const Device& device, const Provider& provider, std::uin
     byPixel.lightLists = LightLists::Pixel;
     if (const Result made = context->prepare(byPixel); !made) throw GpuError(made.message());
     rows.push_back({kPassFindLightsApproximate, "find_lights_approximate, lists by pixel"});
+    rows.push_back({kPassFindLightsAccurate, passOf(kPassFindLightsAccurate).name});
     using enum renderer::LightingKind;
     renderer::LightingPipelines lighting(device, *context);
     for (const renderer::LightingKind kind : {Deferred, Evaluate, Inline, Unshadowed}) lighting.get(kind, settings);

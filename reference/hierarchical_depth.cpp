@@ -1,6 +1,11 @@
 // See hierarchical_depth.h.
 #include "reference/hierarchical_depth.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "gpu_interface/numbers.h"
+
 namespace gnomon::reference {
 
 std::vector<TileDepths> tileDepths(const PixelGrid& grid) {
@@ -19,6 +24,47 @@ std::vector<TileDepths> tileDepths(const PixelGrid& grid) {
         }
     }
     return result;
+}
+
+TileSlices tileSlices(const PixelGrid& grid, std::uint32_t tileX, std::uint32_t tileY, double nearMetres,
+                      double farMetres) {
+    TileSlices result;
+    const auto sliceOf = [&](double depth) {
+        const double share = farMetres > nearMetres ? (depth - nearMetres) / (farMetres - nearMetres) : 0.0;
+        return std::clamp(static_cast<int>(std::floor(share * gpu::kDepthSlices)), 0, int(gpu::kDepthSlices) - 1);
+    };
+    for (const auto [x, y] : grid.tilePixels(tileX, tileY)) {
+        const Pixel& pixel = grid.at(x, y);
+        if (pixel.background) continue;
+        // The share itself is rounded, too.
+        const double error = pixel.viewDepthError + 4 * kFloatRoundoff * (farMetres - nearMetres);
+        const int first = sliceOf(pixel.viewDepth - error), last = sliceOf(pixel.viewDepth + error);
+        if (first == last) result.must |= 1u << first;
+        for (int i = first; i <= last; ++i) result.may |= 1u << i;
+    }
+    return result;
+}
+
+Findings checkTileSlices(const PixelGrid& grid, std::span<const float> minMax, std::span<const std::uint32_t> slices) {
+    Findings findings;
+    const std::size_t tiles = std::size_t(grid.tilesX) * grid.tilesY;
+    if (minMax.size() < 2 * tiles || slices.size() < tiles) {
+        findings.add("%zu slices are too few for %zu tiles", slices.size(), tiles);
+        return findings;
+    }
+    for (std::size_t i = 0; i < tiles; ++i) {
+        if (minMax[2 * i] > minMax[2 * i + 1]) {  // no geometry
+            if (slices[i] != 0) findings.add("tile %zu is empty but has slices %08x", i, slices[i]);
+            continue;
+        }
+        const TileSlices expected =
+            tileSlices(grid, static_cast<std::uint32_t>(i % grid.tilesX), static_cast<std::uint32_t>(i / grid.tilesX),
+                       minMax[2 * i], minMax[2 * i + 1]);
+        if ((expected.must & ~slices[i]) != 0 || (slices[i] & ~expected.may) != 0)
+            findings.add("tile %zu has slices %08x; it must have %08x and may have %08x", i, slices[i], expected.must,
+                         expected.may);
+    }
+    return findings;
 }
 
 Findings checkTileDepths(const PixelGrid& grid, std::span<const float> minMax) {

@@ -171,7 +171,7 @@ Findings checkEvaluateTiles(const ListBuffers& buffers, std::span<const std::uin
         if (expected.count(tile) == 0) findings.add("tile (%u, %u) needs no evaluation", tile & 0xFFFFu, tile >> 16);
     }
     const std::uint32_t rows = gpu::divideRoundingUp(count, gpu::kEvaluateRowTiles);
-    if (count > 0 && (words[0] != gpu::kEvaluateRowTiles || words[1] != rows || words[2] != 1))
+    if (words[0] != std::min(count, gpu::kEvaluateRowTiles) || words[1] != rows || words[2] != 1)
         findings.add("dispatch of %u x %u x %u for %u tiles", words[0], words[1], words[2], count);
     return findings;
 }

@@ -15,7 +15,7 @@
 namespace gnomon {
 
 /// Needs Vulkan 1.3 with synchronization2, and computeFullSubgroups and subgroupSizeControl enabled; subgroup
-/// operations (basic, arithmetic) in compute shaders; 20 storage buffers per stage; for debugLabels VK_EXT_debug_utils
+/// operations (basic, arithmetic) in compute shaders; 21 storage buffers per stage; for debugLabels VK_EXT_debug_utils
 /// on the instance.
 struct ContextDesc {
     VkInstance instance = VK_NULL_HANDLE;

@@ -3,7 +3,42 @@
 #include <bit>
 #include <utility>
 
+#include "core/settings.h"
+
 namespace gnomon {
+namespace {
+
+using namespace gpu;
+
+// Whether a frame of these settings records a pass that is made once.
+bool isRecorded(PassId pass, const Specialization& settings) {
+    switch (pass) {
+        case kPassFindLightsAccurate:
+            return settings.lightLists == kListsByPixel;
+        // Lights without shadows belong to the tiles if anything does: see filters.glsl.
+        case kPassFilterTiles:
+            return settings.filters == 0 || (settings.filters & kFiltersByTile) != 0;
+        case kPassClassifyPairs:
+            return (settings.filters & ~kFiltersByTile) != 0;
+        case kPassSearchPairs:
+        case kPassFilterPairs:
+            return false;  // made once per queue
+        default:
+            return true;
+    }
+}
+
+// What a pass with these filters alone is told. What none of them asks is the same for all settings. So it tells no
+// pipelines apart.
+Specialization withFilters(Specialization values, FilterSet filters) {
+    values.filters = filters;
+    const bool host = (filters & 1u << kFilterHost) != 0;  // whose code may ask anything
+    if (!host && (filters & 1u << kFilterPcf) == 0) values.pcfRadius = 1;
+    if (!host && (filters & (1u << kFilterPcss | 1u << kFilterPcssShared)) == 0) values.pcssPresets = 1;
+    return values;
+}
+
+}  // namespace
 
 void Pipelines::create(const DeviceContext& device, Desc desc) {
     device_ = &device;
@@ -53,26 +88,22 @@ Result Pipelines::getOne(PassId pass, const Values& all, VkPipeline& out) {
     return {};
 }
 
-Result Pipelines::get(const gpu::Specialization& specialization, QueueSet queues, PassPipelines& out) {
+Result Pipelines::get(const Specialization& settings, QueueSet queues, PassPipelines& out) {
     out = {};
-    for (std::uint32_t pass = 0; pass < kPassCount; ++pass) {
-        if (pass == kPassSearchPairs || pass == kPassFilterPairs) continue;
-        gpu::Specialization own = specialization;
-        if (pass == kPassFilterTiles) {
-            own.filters &= gpu::kFiltersByTile;
-            if (own.filters == 0 && specialization.filters != 0) continue;  // there is nothing for it to do
-        }
-        const Result got = getOne(static_cast<PassId>(pass), std::bit_cast<Values>(own), out.once[pass]);
-        if (!got) return got;
+    for (std::uint32_t i = 0; i < kPassCount; ++i) {
+        const auto pass = static_cast<PassId>(i);
+        if (!isRecorded(pass, settings)) continue;
+        const FilterSet filters = pass == kPassFilterTiles ? settings.filters & kFiltersByTile : settings.filters;
+        const auto values = std::bit_cast<Values>(withFilters(settings, filters));
+        if (Result got = getOne(pass, values, out.once[i]); !got) return got;
     }
-    for (std::uint32_t queue = 0; queue < gpu::kPairQueueCount; ++queue) {
+    for (std::uint32_t queue = 0; queue < kPairQueueCount; ++queue) {
         if ((queues >> queue & 1u) == 0) continue;
-        gpu::Specialization own = specialization;
-        own.filters = 1u << queue / gpu::kShadowViewsKinds;
-        own.shadowViews = queue % gpu::kShadowViewsKinds + 1;
+        Specialization own = withFilters(settings, 1u << queue / kShadowViewsKinds);
+        own.shadowViews = queue % kShadowViewsKinds + 1;
         const auto values = std::bit_cast<Values>(own);
         if (Result got = getOne(kPassFilterPairs, values, out.filterPairs[queue]); !got) return got;
-        if (queue / gpu::kShadowViewsKinds != gpu::kFilterPcssShared) continue;
+        if (queue / kShadowViewsKinds != kFilterPcssShared) continue;
         if (Result got = getOne(kPassSearchPairs, values, out.searchPairs[queue]); !got) return got;
     }
     return {};

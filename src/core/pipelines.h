@@ -18,7 +18,8 @@ static_assert(gpu::kPairQueueCount <= 32);
 
 // The pipelines of one frame.
 struct PassPipelines {
-    std::array<VkPipeline, kPassCount> once = {};  // by PassId, of passes that are made once
+    // By PassId, of passes that are made once; null for those that the settings do not record.
+    std::array<VkPipeline, kPassCount> once = {};
     // By queue, of passes that are made once per queue; null for queues that were not asked for.
     std::array<VkPipeline, gpu::kPairQueueCount> searchPairs = {}, filterPairs = {};
 };

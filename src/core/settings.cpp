@@ -107,7 +107,11 @@ void writePcssTaps(const ShadowSettings& s, GpuFrame& frame) noexcept {
         const double angle = kGoldenAngle * i, place = i + 0.5;
         const double x = std::cos(angle), y = std::sin(angle), filtered = std::sqrt(place), searched = place * place;
         frame.pcssPattern[i] = {{static_cast<float>(filtered * x), static_cast<float>(filtered * y)},
-                                {static_cast<float>(searched * x), static_cast<float>(searched * y)}};
+                                {static_cast<float>(searched * x), static_cast<float>(searched * y)},
+                                static_cast<float>(searched),
+                                0.0f,
+                                0.0f,
+                                0.0f};
     }
 }
 

@@ -18,6 +18,7 @@ constexpr ViewBuffer kBuffers[kViewBufferCount] = {
     {"tile_light_masks", BufferKind::Streamed, kSetLists, kBindTileLightMasks},
     {"tile_group_light_masks", BufferKind::Device, kSetLists, kBindTileGroupLightMasks},
     {"tile_depth_ranges", BufferKind::Device, kSetLists, kBindTileDepthRanges},
+    {"tile_depth_slices", BufferKind::Device, kSetWorking, kBindTileDepthSlices},
     {"tile_light_slot_ids", BufferKind::Device, kSetLists, kBindTileLightSlotIds},
     {"approximate_counts", BufferKind::Device, kSetWorking, kBindApproximateCounts},
     {"early_light_list", BufferKind::Device, kSetLists, kBindEarlyList},
@@ -126,6 +127,7 @@ ViewSizes viewSizesOf(const DeviceContext& device, const ViewDesc& desc) noexcep
     s.bytes[kBufferTileLightMasks] = prepared.tileLightMasks;
     s.bytes[kBufferTileGroupLightMasks] = groups * kLightMaskEntryWords * 4;
     s.bytes[kBufferTileDepthRanges] = tiles * 8;
+    s.bytes[kBufferTileDepthSlices] = tiles * 4;
     s.bytes[kBufferTileLightSlotIds] = tiles * 4;
     s.bytes[kBufferApproximateCounts] = tiles * 4;
     s.bytes[kBufferEarlyList] = std::max<VkDeviceSize>(s.listEntries / kEarlyIndicesPerWord, 1) * 4;

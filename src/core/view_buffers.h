@@ -32,6 +32,7 @@ enum ViewBufferId : std::uint32_t {
     kBufferTileLightMasks,
     kBufferTileGroupLightMasks,
     kBufferTileDepthRanges,
+    kBufferTileDepthSlices,
     kBufferTileLightSlotIds,
     kBufferApproximateCounts,
     kBufferEarlyList,

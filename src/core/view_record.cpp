@@ -106,15 +106,10 @@ void resetFrame(View::State& state, VkCommandBuffer commands) {
     GpuCounters counters = {};
     counters.frameStamp = stampOf(state.frames[state.current].frameNumber);
     GpuEvaluateHead head = {};
-    head.groupCountX = kEvaluateRowTiles;
     head.groupCountZ = 1;
     GpuPairHead pairHead = {};
-    pairHead.classifyGroupCountX = kPairRowGroups;
     pairHead.classifyGroupCountZ = 1;
-    for (GpuPairQueue& queue : pairHead.queues) {
-        queue.searchGroupCountX = queue.filterGroupCountX = kPairRowGroups;
-        queue.searchGroupCountZ = queue.filterGroupCountZ = 1;
-    }
+    for (GpuPairQueue& queue : pairHead.queues) queue.searchGroupCountZ = queue.filterGroupCountZ = 1;
     const VkDeviceSize offset = state.desc.guardBytes;
     vk.CmdUpdateBuffer(commands, state.buffers.device[kBufferPairQueues].buffer, offset, sizeof(pairHead), &pairHead);
     vk.CmdUpdateBuffer(commands, state.buffers.device[kBufferCounters].buffer, offset, sizeof(counters), &counters);
@@ -131,7 +126,6 @@ void clearFinalCounts(View::State& state, VkCommandBuffer commands) {
     vk.CmdFillBuffer(commands, state.buffers.device[kBufferFinalCounts].buffer, state.desc.guardBytes,
                      state.sizes.bytes[kBufferFinalCounts], 0);
     GpuEvaluateHead head = {};
-    head.groupCountX = kEvaluateRowTiles;
     head.groupCountZ = 1;
     vk.CmdUpdateBuffer(commands, state.buffers.device[kBufferEvaluateTiles].buffer, state.desc.guardBytes, sizeof(head),
                        &head);
@@ -163,7 +157,7 @@ void View::recordFindLightsApproximate(VkCommandBuffer commands) noexcept {
 void View::recordFindLightsAccurate(VkCommandBuffer commands) noexcept {
     State& state = *state_;
     const GpuFrame& f = state.frame;
-    if (state.frames[state.current].settings.lightLists == LightLists::Pixel)
+    if (state.pipelines.once[kPassFindLightsAccurate] != VK_NULL_HANDLE)
         recordPass(state, commands, kPassFindLightsAccurate, f.tileCounts.x, f.tileCounts.y);
     recorderOf(state, commands).publish();
 }
@@ -178,11 +172,9 @@ void View::recordShadowBounds(VkCommandBuffer commands) noexcept {
 
 void View::recordGenerateShadows(VkCommandBuffer commands) noexcept {
     State& state = *state_;
-    // Lights without shadows belong to the tiles if anything does: see filters.glsl.
-    const FilterSet filters = state.frames[state.current].settings.filters;
-    if (filters == 0 || (filters & kFiltersByTile) != 0)
+    if (state.pipelines.once[kPassFilterTiles] != VK_NULL_HANDLE)
         recordPass(state, commands, kPassFilterTiles, state.frame.tileCounts.x, state.frame.tileCounts.y);
-    if ((filters & ~kFiltersByTile) != 0) recordPairs(state, commands);
+    if (state.pipelines.once[kPassClassifyPairs] != VK_NULL_HANDLE) recordPairs(state, commands);
     state.frames[state.current].generated = true;
     recorderOf(state, commands).publish();
 }

@@ -161,7 +161,7 @@ void main() {
         uint groupMaskBase = tileGroupIndexOf(tile) * kLightMaskEntryWords;
         Candidates candidates = candidatesOf(tile * kShadowTileSizePx, depths.x, depths.y);
         groups = candidates.groupBits & tileGroupLightMasks[groupMaskBase];
-        testFroxel(lane, groups, candidates, froxelOf(tile, depths.x, depths.y), groupMaskBase);
+        testFroxel(lane, groups, candidates, froxelOf(tile, depths, tileDepthSlices[tileIndex]), groupMaskBase);
     }
     barrier();
     testPixels(receiver, groups);

@@ -27,6 +27,7 @@ constexpr PassResource kResources[] = {
     {kSetReceivers, kBindReceiverFlags, Access::Sampled},
     {kSetWorking, kBindCounters, Access::Write},
     {kSetWorking, kBindApproximateCounts, Access::Read},
+    {kSetWorking, kBindTileDepthSlices, Access::Read},
     {kSetWorking, kBindListTiles, Access::Write},
     {kSetWorking, kBindPairQueues, Access::Write},
 };

@@ -163,7 +163,7 @@ void main() {
     Froxel froxel;
     if (hasGeometry) {
         candidates = candidatesOf(tile * kShadowTileSizePx, depths.x, depths.y);
-        froxel = froxelOf(tile, depths.x, depths.y);
+        froxel = froxelOf(tile, depths, tileDepthSlices[tileIndex]);
     }
     Found found = testLights(lane, hasGeometry, candidates, froxel);
     barrier();

@@ -23,6 +23,7 @@ constexpr PassResource kResources[] = {
     {kSetLists, kBindFinalCounts, Access::Write},
     {kSetLists, kBindEvaluateTiles, Access::Write},
     {kSetWorking, kBindCounters, Access::Write},
+    {kSetWorking, kBindTileDepthSlices, Access::Read},
     {kSetWorking, kBindApproximateCounts, Access::Write},
     {kSetWorking, kBindListTiles, Access::Write},
     {kSetWorking, kBindPairQueues, Access::Write},

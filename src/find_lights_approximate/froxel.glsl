@@ -2,7 +2,7 @@
 //
 // Problem: discard, per tile and at the price of a few dozen instructions, most lights that reach none of its pixels.
 // Never discard one that does: phase 3 writes into the space that is reserved from these answers.
-// Source: the paper, section 2.2 (three tests); Wronski 2017, "Cull that cone!".
+// Source: the paper, section 2.2 (three tests); Wronski 2017, "Cull that cone!"; Harada 2012 (depth slices).
 // Floats: every comparison gives way by `margin`. It bounds the rounding of both this test and the per-pixel test, for
 // positions of up to frame.largestCoordinate metres. The per-pixel test compares cosines. Their rounding widens narrow
 // cones the most, so cones are taken a little wider here.
@@ -11,6 +11,7 @@
 
 #include "shading/frame.glsl"
 #include "shading/light_tests.glsl"
+#include "hierarchical_depth/depth_slices.glsl"
 
 struct Froxel {
     vec2 slopeMin;  // xy bounds at depth 1 (perspective) or at any depth (orthographic)
@@ -18,10 +19,15 @@ struct Froxel {
     vec3 boxMin;    // view-space bounds
     vec3 boxMax;
     float margin;   // metres
+    vec2 range;     // of depths, metres,
+    uint slices;    // and which parts of it hold geometry
 };
 
-Froxel froxelOf(uvec2 tile, float nearDepth, float farDepth) {
+Froxel froxelOf(uvec2 tile, vec2 range, uint slices) {
     Froxel f;
+    f.range = range;
+    f.slices = slices;
+    float nearDepth = range.x, farDepth = range.y;
     vec2 a = vec2(tile * kShadowTileSizePx) * frame.viewXyPerPixel + frame.viewXyAtPixel0;
     vec2 b = vec2((tile + 1u) * kShadowTileSizePx) * frame.viewXyPerPixel + frame.viewXyAtPixel0;
     f.slopeMin = min(a, b);
@@ -50,6 +56,27 @@ bool sphereOutside(Froxel f, vec3 centre, float radius) {
     vec2 above = (centre.xy - f.slopeMax * centre.z) * inversesqrt(1.0 + f.slopeMax * f.slopeMax);
     vec2 below = (f.slopeMin * centre.z - centre.xy) * inversesqrt(1.0 + f.slopeMin * f.slopeMin);
     return max(max(above.x, above.y), max(below.x, below.y)) > reach;
+}
+
+// Which slices of the range a sphere may reach. A pixel is at most half a diagonal of the froxel's far end aside from
+// the ray through the tile's middle. So the sphere, wider by that, is cut with the ray.
+uint slicesOfSphere(Froxel f, vec3 centre, float radius) {
+    vec2 middle = 0.5 * (f.slopeMin + f.slopeMax);
+    float diagonal = length(f.slopeMax - f.slopeMin);
+    vec3 ray = isOrthographic() ? vec3(0.0, 0.0, 1.0) : vec3(middle, 1.0);
+    vec3 start = isOrthographic() ? vec3(middle, 0.0) : vec3(0.0);
+    float aside = 0.5 * (isOrthographic() ? diagonal : diagonal * f.boxMax.z);
+    float squared = dot(ray, ray);
+    vec3 toCentre = centre - start;
+    float depth = dot(toCentre, ray) / squared;
+    vec3 away = toCentre - depth * ray;
+    float reach = radius + aside + f.margin;
+    float chord = reach * reach - dot(away, away);
+    if (chord < 0.0) return 0u;
+    float extent = sqrt(chord / squared) + f.margin;
+    if (depth + extent < f.range.x || depth - extent > f.range.y) return 0u;
+    uint first = depthSlice(f.range, depth - extent), last = depthSlice(f.range, depth + extent);
+    return (kAllDepthSlices >> (kDepthSlices - 1u - last)) & (kAllDepthSlices << first);
 }
 
 // Cosine and sine of the half-angle at which the per-pixel test may still say yes.
@@ -90,6 +117,7 @@ bool lightMayReachFroxel(GpuLight light, Froxel f) {
     uint type = lightType(light);
     if (type == kLightDirectional) return true;
     if (sphereOutside(f, light.positionVs, light.rangeMetres)) return false;
+    if ((slicesOfSphere(f, light.positionVs, light.rangeMetres) & f.slices) == 0u) return false;
     if (type == kLightPoint) return true;
     vec3 centre = 0.5 * (f.boxMin + f.boxMax);
     vec2 cone = widenedCone(light);

@@ -11,6 +11,7 @@ void appendEvaluateTile(uvec2 tile) {
     uint i = atomicAdd(evaluateHead.tileCount, 1u);
     if (i >= frame.tileCounts.x * frame.tileCounts.y) return;
     evaluateTiles[i] = packTile(tile.x, tile.y);
+    atomicMax(evaluateHead.groupCountX, min(i + 1u, kEvaluateRowTiles));
     atomicMax(evaluateHead.groupCountY, i / kEvaluateRowTiles + 1u);
 }
 
@@ -34,6 +35,7 @@ void writeTileLists(uvec2 tile, uint slotId, uint count, uint casting) {
 // Phase 4 walks list space up to here.
 void walkListSpace(uint entries) {
     uint groups = divideRoundingUp(entries, kPlacesPerClassifyGroup);
+    atomicMax(pairs.classifyGroupCountX, min(groups, kPairRowGroups));
     atomicMax(pairs.classifyGroupCountY, divideRoundingUp(groups, kPairRowGroups));
 }
 

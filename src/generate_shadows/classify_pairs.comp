@@ -58,10 +58,13 @@ void makeRoom(uint queue) {
     if (isSearched(queue)) {
         first = atomicAdd(pairs.queues[queue].searchCount, count);
         uint groups = divideRoundingUp(first + count, kPairsPerSearchGroup);
+        atomicMax(pairs.queues[queue].searchGroupCountX, min(groups, kPairRowGroups));
         atomicMax(pairs.queues[queue].searchGroupCountY, divideRoundingUp(groups, kPairRowGroups));
     } else {
         first = atomicAdd(pairs.queues[queue].filterCount, count);
-        atomicMax(pairs.queues[queue].filterGroupCountY, divideRoundingUp(first + count, kPairRowGroups));
+        uint groups = divideRoundingUp(first + count, kPairsPerFilterGroup);
+        atomicMax(pairs.queues[queue].filterGroupCountX, min(groups, kPairRowGroups));
+        atomicMax(pairs.queues[queue].filterGroupCountY, divideRoundingUp(groups, kPairRowGroups));
     }
     firsts[queue] = segment + first;
 }

@@ -1,5 +1,6 @@
 #include "generate_shadows/filter_tiles.h"
 
+#include "generate_shadows/evaluation_resources.h"
 #include "gpu_interface/numbers.h"
 
 namespace gnomon {
@@ -10,28 +11,10 @@ using namespace gpu;
 constexpr std::uint32_t kSpirv[] = {
 #include "filter_tiles.spv.h"
 };
-constexpr PassResource kResources[] = {
-    {kSetLists, kBindFrame, Access::Uniform},
-    {kSetLists, kBindLights, Access::Streamed},
+constexpr auto kResources = withEvaluationResources({
     {kSetLists, kBindTileLightSlotIds, Access::Read},
-    {kSetLists, kBindEarlyList, Access::Read},
     {kSetLists, kBindEarlyCounts, Access::Read},
-    {kSetLists, kBindFinalList, Access::Write},
-    {kSetLists, kBindFinalCounts, Access::Write},
-    {kSetLists, kBindVisibility, Access::Write},
-    {kSetLists, kBindEvaluateTiles, Access::Write},
-    {kSetReceivers, kBindDepth, Access::Sampled},
-    {kSetReceivers, kBindFaceNormals, Access::Sampled},
-    {kSetReceivers, kBindReceiverFlags, Access::Sampled},
-    {kSetShadowmaps, kBindShadowViews, Access::Streamed},
-    {kSetShadowmaps, kBindShadowAtlas0, Access::Sampled},
-    {kSetShadowmaps, kBindShadowAtlas0 + 1, Access::Sampled},
-    {kSetShadowmaps, kBindShadowAtlas0 + 2, Access::Sampled},
-    {kSetShadowmaps, kBindShadowAtlas0 + 3, Access::Sampled},
-    {kSetShadowmaps, kBindShadowSampler, Access::Sampled},
-    {kSetShadowmaps, kBindShadowBounds, Access::Read},
-    {kSetWorking, kBindCounters, Access::Write},
-};
+});
 constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize, kSpecFilters,         kSpecPcfRadius,
                                              kSpecPcssPresets,  kSpecVisibilityBits,  kSpecShadowAtlases,
                                              kSpecDepthBias,    kSpecFacedAwayIsDark, kSpecShadowViews};

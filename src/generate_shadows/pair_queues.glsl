@@ -27,6 +27,9 @@ Pair pairAt(uint place) {
 // Whether the queue's pairs are searched quad by quad before they are filtered.
 bool isSearched(uint queue) { return queue / kShadowViewsKinds == kFilterPcssShared; }
 
+// Pairs that one work group of filter_pairs takes.
+const uint kPairsPerFilterGroup = kSubgroupSize < kWorkGroupSize ? kMostPairsPerFilterGroup : 1u;
+
 // A work group's number in a dispatch over pairs.
 uint pairGroup() { return gl_WorkGroupID.y * kPairRowGroups + gl_WorkGroupID.x; }
 

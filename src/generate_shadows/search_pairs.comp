@@ -41,7 +41,9 @@ void makeRoom(uint queue) {
     uint withSlot = firstSlot < frame.slotCapacity ? min(mixedCount, frame.slotCapacity - firstSlot) : 0u;
     if (withSlot == 0u) return;
     uint first = atomicAdd(pairs.queues[queue].filterCount, withSlot);
-    atomicMax(pairs.queues[queue].filterGroupCountY, (first + withSlot - 1u) / kPairRowGroups + 1u);
+    uint groups = divideRoundingUp(first + withSlot, kPairsPerFilterGroup);
+    atomicMax(pairs.queues[queue].filterGroupCountX, min(groups, kPairRowGroups));
+    atomicMax(pairs.queues[queue].filterGroupCountY, divideRoundingUp(groups, kPairRowGroups));
     firstQueued = frame.listCapacity + pairs.queues[queue].first + first;
 }
 

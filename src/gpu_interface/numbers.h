@@ -23,6 +23,9 @@ GNOMON_CONSTANT GNOMON_UINT kTileGroupSizeTiles = 8u;
 GNOMON_CONSTANT GNOMON_UINT kTileGroupSizePx = kShadowTileSizePx * kTileGroupSizeTiles;
 // Tiles in a row whose depth ranges one work group finds.
 GNOMON_CONSTANT GNOMON_UINT kDepthTilesPerGroup = 4u;
+// Equal parts of a tile's depth range; one bit each says whether it holds a pixel.
+GNOMON_CONSTANT GNOMON_UINT kDepthSlices = 32u;
+GNOMON_CONSTANT GNOMON_UINT kAllDepthSlices = 0xFFFFFFFFu;
 // Granularity of the CPU's light masks: 120x68 = 8,160 entries.
 GNOMON_CONSTANT GNOMON_UINT kMaskTileSizePx = 32u;
 // Every work group is 64x1x1, lanes in Morton order over 8x8.
@@ -58,7 +61,8 @@ GNOMON_CONSTANT GNOMON_UINT kSlotEvaluate = 0x3FFFFDu;
 GNOMON_CONSTANT GNOMON_UINT kMaxVisibilitySlots = kSlotEvaluate;
 // Tile Light SlotID of a tile that got no list space.
 GNOMON_CONSTANT GNOMON_UINT kNoListSpace = 0xFFFFFFFFu;
-// Tiles to be shaded with evaluation form rows of this many work groups in the indirect dispatch.
+// Tiles to be shaded with evaluation form rows of this many work groups in the indirect dispatch. A lone row is as long
+// as there are tiles.
 GNOMON_CONSTANT GNOMON_UINT kEvaluateRowTiles = 1024u;
 
 // --- Light types and flags -------------------------------------------------------------------------------------------
@@ -127,7 +131,7 @@ GNOMON_CONSTANT GNOMON_UINT kShadowViewsCascades = 3u;  // directional lights
 GNOMON_CONSTANT GNOMON_UINT kShadowViewsKinds = 3u;     // without "any"
 // A queue per filter and kind of shadow views: see pairQueueOf() of packing.h.
 GNOMON_CONSTANT GNOMON_UINT kPairQueueCount = kFilterCount * kShadowViewsKinds;
-// Work groups over pairs form rows of this many in indirect dispatches.
+// Work groups over pairs form rows of this many in indirect dispatches. A lone row is as long as it must be.
 GNOMON_CONSTANT GNOMON_UINT kPairRowGroups = 1024u;
 // List space beyond this might need more rows than a dispatch may have, 65535.
 GNOMON_CONSTANT GNOMON_UINT kMostListEntries = 65535u * kPairRowGroups;
@@ -138,6 +142,8 @@ GNOMON_CONSTANT GNOMON_UINT kPlacesPerClassifyGroup = 512u;
 GNOMON_CONSTANT GNOMON_UINT kQuadsPerTile = kWorkGroupSize / 4u;
 GNOMON_CONSTANT GNOMON_UINT kSearchRounds = 4u;
 GNOMON_CONSTANT GNOMON_UINT kPairsPerSearchGroup = kSearchRounds * (kWorkGroupSize / kQuadsPerTile);
+// Pairs that one work group of filter_pairs takes: so many where subgroups are smaller than a tile, else one.
+GNOMON_CONSTANT GNOMON_UINT kMostPairsPerFilterGroup = 4u;
 // What a search tells of a quad, 16 bits. Else the filter's radius in parts of a texel.
 GNOMON_CONSTANT GNOMON_UINT kQuadDark = 0u;
 GNOMON_CONSTANT GNOMON_UINT kQuadLit = 0xFFFFu;
@@ -237,7 +243,8 @@ GNOMON_CONSTANT GNOMON_UINT kBindShadowBoundsCells = 2u;
 GNOMON_CONSTANT GNOMON_UINT kBindListTiles = 3u;
 GNOMON_CONSTANT GNOMON_UINT kBindPairQueues = 4u;
 GNOMON_CONSTANT GNOMON_UINT kBindQueuedPairs = 5u;
-GNOMON_CONSTANT GNOMON_UINT kWorkingBindingCount = 6u;
+GNOMON_CONSTANT GNOMON_UINT kBindTileDepthSlices = 6u;
+GNOMON_CONSTANT GNOMON_UINT kWorkingBindingCount = 7u;
 
 #ifdef __cplusplus
 }  // namespace gnomon::gpu

@@ -113,7 +113,9 @@ struct GpuPcssTaps {
 // is the same for all lanes.
 struct GpuPcssTap {
     vec2 filtered;  // times the radius over the square root of their number; evenly spread
-    vec2 searched;  // times the radius over the square of their number; crowded in the middle
+    vec2 searched;  // times the radius over the square of their number; crowded in the middle,
+    float squared;  // at this distance
+    float reserved0, reserved1, reserved2;
 };
 
 // Constants of one frame and view.
@@ -176,7 +178,7 @@ struct GpuCounters {
 // Pairs of one filter and one kind of shadow views, waiting to be evaluated. A pair is named by its place in list
 // space.
 struct GpuPairQueue {
-    uint searchGroupCountX;  // a VkDispatchIndirectCommand: kPairRowGroups,
+    uint searchGroupCountX;  // a VkDispatchIndirectCommand: groups in a row,
     uint searchGroupCountY;  // rows in use,
     uint searchGroupCountZ;  // 1
     uint searchCount;        // pairs whose quads are to be searched
@@ -191,7 +193,7 @@ struct GpuPairQueue {
 };
 
 struct GpuPairHead {
-    uint classifyGroupCountX;  // a VkDispatchIndirectCommand over list space: kPairRowGroups,
+    uint classifyGroupCountX;  // a VkDispatchIndirectCommand over list space: groups in a row,
     uint classifyGroupCountY;  // rows in use,
     uint classifyGroupCountZ;  // 1
     uint reserved0;
@@ -200,7 +202,7 @@ struct GpuPairHead {
 
 // Head of the list of tiles to be shaded with evaluation; tile coordinates (y << 16 | x) follow.
 struct GpuEvaluateHead {
-    uint groupCountX;  // a VkDispatchIndirectCommand: kEvaluateRowTiles,
+    uint groupCountX;  // a VkDispatchIndirectCommand: tiles in a row,
     uint groupCountY;  // rows in use,
     uint groupCountZ;  // 1
     uint tileCount;
@@ -239,7 +241,9 @@ static_assert(offsetof(Specialization, shadowViews) == 4 * kSpecShadowViews);
 static_assert(sizeof(GpuLight) == 96);
 static_assert(sizeof(GpuShadowView) == 208);
 static_assert(sizeof(GpuShadowBoundsCell) == 32);
-static_assert(sizeof(GpuFrame) == 16 * (16 + kMaxPcssTaps));
+static_assert(kDepthSlices == 32);                                          // bits of a word
+static_assert(kMostPairsPerFilterGroup * kQuadsPerTile <= kWorkGroupSize);  // filter_pairs: a lane per quad
+static_assert(sizeof(GpuFrame) == 16 * (16 + 2 * kMaxPcssTaps));
 static_assert(sizeof(GpuCounters) == 52);
 static_assert(sizeof(GpuPairQueue) == 48);
 static_assert(sizeof(GpuPairHead) == 16 + 48 * kPairQueueCount);

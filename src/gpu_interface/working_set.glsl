@@ -19,5 +19,9 @@ layout(set = kSetWorking, binding = kBindPairQueues, std430) restrict buffer Pai
 // Places in list space. Two halves, each as long as list space: pairs to be searched, and pairs to be filtered. In each
 // half a queue has a segment as long as its pairs are many.
 layout(set = kSetWorking, binding = kBindQueuedPairs, std430) restrict buffer QueuedPairsBlock { uint queuedPairs[]; };
+// Which parts of a tile's depth range hold geometry: hierarchical_depth/depth_slices.glsl.
+layout(set = kSetWorking, binding = kBindTileDepthSlices, std430) restrict buffer TileDepthSlicesBlock {
+    uint tileDepthSlices[];
+};
 
 #endif

@@ -14,6 +14,7 @@ constexpr PassResource kResources[] = {
     {kSetLists, kBindFrame, Access::Uniform},
     {kSetLists, kBindTileDepthRanges, Access::Write},
     {kSetReceivers, kBindDepth, Access::Sampled},
+    {kSetWorking, kBindTileDepthSlices, Access::Write},
     {kSetReceivers, kBindHostDepthPyramid, Access::Sampled},
 };
 constexpr std::uint32_t kSpecialization[] = {kSpecSubgroupSize, kSpecHostDepthPyramid};

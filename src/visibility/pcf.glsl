@@ -24,7 +24,9 @@ float pcfVisibility(ShadowPoint s) {
             precise float left = i == 0u ? 1.0 - f.x : 1.0;
             precise float right = i == kPcfRadius ? f.x : 1.0;
             vec2 texel = first + 2.0 * vec2(i, j);
-            vec4 lit = vec4(lessThanEqual(gatherShadowTexels(s, texel), planeDepthsAt(s, texel)));
+            float base = endlessPlaneDepthAt(s, texel);
+            vec4 stored = storedInFootprint(s, gatherFootprint(s, texel), base);
+            vec4 lit = vec4(lessThanEqual(stored, planeInFootprint(s, base)));
             sum += bottom * (left * lit.x + right * lit.y) + top * (right * lit.z + left * lit.w);
         }
     }

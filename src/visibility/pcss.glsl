@@ -26,7 +26,9 @@
 float filterTap(ShadowPoint s, vec2 corner) {
     vec2 first = floorOfTap(corner);
     precise vec2 f = corner - first;
-    vec4 lit = vec4(lessThanEqual(gatherShadowTexels(s, first), planeDepthsAt(s, first)));
+    float base = endlessPlaneDepthAt(s, first);
+    vec4 stored = storedInFootprint(s, gatherFootprint(s, first), base);
+    vec4 lit = vec4(lessThanEqual(stored, planeInFootprint(s, base)));
     precise float top = fma(f.x, lit.z - lit.w, lit.w);
     precise float bottom = fma(f.x, lit.y - lit.x, lit.x);
     precise float value = fma(f.y, bottom - top, top);
@@ -49,7 +51,7 @@ float filterPenumbra(GpuLight light, ShadowPoint s, PcssKernel k, float radius, 
                 otherFace(light, s, i, corner + 0.5, plane, stored);
                 sum += stored > plane ? 0.0 : 1.0;
             } else {
-                sum += filterTap(s, clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));
+                sum += filterTap(s, cornerInside(s, corner));
             }
         }
     }

@@ -16,14 +16,17 @@ uint pcssPresetOf(GpuLight light) {
 // What a search has found.
 struct Blockers {
     float blocking;  // texels
-    float depths;    // sum over them
+    float depths;    // sum over them, without the sign
     bool allOcclude;
 };
 
+// A footprint (visibility/shadowmap.glsl). `stored`: without the sign.
 // `farthest`: what is stored farther from the light than this is out of the source's sight at the tap's radius.
-void countBlockers(vec4 plane, vec4 stored, float farthest, inout Blockers found) {
-    bvec4 occludes = greaterThan(stored, plane);
-    bvec4 seen = greaterThan(stored, vec4(farthest));
+void countBlockers(ShadowPoint s, vec4 stored, float base, vec4 plane, float farthest, inout Blockers found) {
+    vec4 above = storedInFootprint(s, stored, base);
+    precise float seenAbove = farthest - base;
+    bvec4 occludes = greaterThan(above, plane);
+    bvec4 seen = greaterThan(above, vec4(seenAbove));
     found.allOcclude = found.allOcclude && all(occludes);
     precise vec4 blocks = vec4(occludes.x && seen.x, occludes.y && seen.y, occludes.z && seen.z, occludes.w && seen.w);
     precise float blocking = found.blocking + ((blocks.x + blocks.y) + (blocks.z + blocks.w));
@@ -33,6 +36,11 @@ void countBlockers(vec4 plane, vec4 stored, float farthest, inout Blockers found
     depths = fma(blocks.w, stored.w, depths);
     found.blocking = blocking;
     found.depths = depths;
+}
+
+void countFootprint(ShadowPoint s, vec2 first, float farthest, inout Blockers found) {
+    float base = endlessPlaneDepthAt(s, first);
+    countBlockers(s, gatherFootprint(s, first), base, planeInFootprint(s, base), farthest, found);
 }
 
 // A blocker must be nearer to the light than the receiver: a tap's plane depth grows beyond it by one texel's slope.
@@ -73,10 +81,10 @@ bool knownByBounds(ShadowPoint s, PcssKernel k, float reach, float spread, out f
     return false;
 }
 
-float searchRadius(uint tap, float scale) {
-    precise float place = float(tap) + 0.5;
-    precise float radius = place * place * scale;
-    return radius;
+// What is stored farther from the light than this is out of the source's sight at a tap's radius.
+float farthestAt(float squared, vec3 sight) {
+    precise float farthest = fma(squared, sight.x, sight.y);
+    return max(farthest, sight.z);
 }
 
 // Returns the filter's radius. Below 0 no filter is needed, and `visibility` is known. There are two loops, so that
@@ -92,38 +100,34 @@ float searchBlockers(GpuLight light, ShadowPoint s, PcssKernel k, float spread, 
     precise float farthest0 = k.radius1 > 0.0 ? -(k.radius0 + kTapTexels * k.texel) * inverse : -2.0;
     Blockers found = Blockers(0.0, 0.0, true);
     precise float scale = reach * perTapSquared;
+    precise vec3 sight = vec3(scale * inverse, farthest0 - spread * inverse, farthest0);
     TapAxes axes = tapAxes(k, scale);
     if (!mayLeave(s, k, reach)) {
         float needed;
         if (knownByBounds(s, k, reach, spread, needed, visibility)) return -1.0;
+        precise float mostSquared = needed / scale;
         for (uint i = 0u; i < taps; ++i) {
-            float radius = searchRadius(i, scale);
-            if (radius > needed && !found.allOcclude) break;  // beyond, there is no blocker
-            vec2 first = floorOfTap(tapCorner(s, axes, frame.pcssPattern[i].searched));
-            vec4 stored = gatherShadowTexels(s, first);
-            countBlockers(planeDepthsAt(s, first), stored, fma(max(radius - spread, 0.0), inverse, farthest0), found);
+            GpuPcssTap tap = frame.pcssPattern[i];
+            if (tap.squared > mostSquared && !found.allOcclude) break;  // beyond, there is no blocker
+            countFootprint(s, floorOfTap(tapCorner(s, axes, tap.searched)), farthestAt(tap.squared, sight), found);
         }
     } else {
         for (uint i = 0u; i < taps; ++i) {
-            float radius = searchRadius(i, scale);
-            vec2 corner = tapCorner(s, axes, frame.pcssPattern[i].searched);
-            vec4 plane, stored;
+            GpuPcssTap tap = frame.pcssPattern[i];
+            vec2 corner = tapCorner(s, axes, tap.searched);
+            float farthest = farthestAt(tap.squared, sight);
             if (leavesFace(s, k, corner)) {
-                float planeThere, storedThere;
-                otherFace(light, s, i, corner + 0.5, planeThere, storedThere);
-                plane = vec4(planeThere);
-                stored = vec4(storedThere);
+                float plane, stored;
+                otherFace(light, s, i, corner + 0.5, plane, stored);
+                countBlockers(s, vec4(stored * s.sign), 0.0, vec4(plane), farthest, found);
             } else {
-                vec2 first = floorOfTap(clamp(corner, s.rectMin + 0.5, s.rectMax - 1.5));
-                plane = planeDepthsAt(s, first);
-                stored = gatherShadowTexels(s, first);
+                countFootprint(s, floorOfTap(cornerInside(s, corner)), farthest, found);
             }
-            countBlockers(plane, stored, fma(max(radius - spread, 0.0), inverse, farthest0), found);
         }
     }
     visibility = found.allOcclude ? 0.0 : 1.0;
     if (found.blocking == 0.0 || found.allOcclude) return -1.0;
-    precise float mean = found.depths / found.blocking;
+    precise float mean = found.depths * s.sign / found.blocking;
     precise float radius = clamp(fma(k.radius1, mean, k.radius0), k.texel, max(k.widest, k.texel));
     return radius;
 }

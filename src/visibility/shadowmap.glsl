@@ -82,20 +82,31 @@ ShadowPoint shadowPointIn(uint viewIndex, GpuLight light, Receiver receiver) {
     return s;
 }
 
-// Depth of the receiver's plane at a texel's centre.
-float planeDepthAt(ShadowPoint s, vec2 texel) {
+// Depth of the receiver's plane at a texel's centre, where nothing limits it.
+float endlessPlaneDepthAt(ShadowPoint s, vec2 texel) {
     if (!kComparesPlanes) return s.depth;
     precise vec2 away = texel - s.corner;
     precise float depth = fma(s.slope.x, away.x, fma(s.slope.y, away.y, s.depth));
-    return max(depth, s.least);
+    return depth;
 }
-// At the 2x2 texels whose first one is `texel`, in the order of textureGather: (0,1), (1,1), (1,0), (0,0).
-vec4 planeDepthsAt(ShadowPoint s, vec2 texel) {
-    if (!kComparesPlanes) return vec4(s.depth);
-    precise vec2 away = texel - s.corner;
-    precise float depth = fma(s.slope.x, away.x, fma(s.slope.y, away.y, s.depth));
-    precise vec4 depths = depth + vec4(s.slope.y, s.slope.x + s.slope.y, s.slope.x, 0.0);
-    return max(depths, vec4(s.least));
+
+float planeDepthAt(ShadowPoint s, vec2 texel) {
+    return kComparesPlanes ? max(endlessPlaneDepthAt(s, texel), s.least) : s.depth;
+}
+
+// Filters compare footprints: the 2x2 texels of a gather, in its order (0,1), (1,1), (1,0), (0,0). All depths are told
+// from that of the plane at the first texel, `base`. So the sign and the base cost one operation for each texel, and
+// how the plane rises is the same for all footprints of a pixel.
+vec4 planeInFootprint(ShadowPoint s, float base) {
+    if (!kComparesPlanes) return vec4(0.0);
+    precise vec4 rise = vec4(s.slope.y, s.slope.x + s.slope.y, s.slope.x, 0.0);
+    precise float least = s.least - base;
+    return max(rise, vec4(least));
+}
+// What is stored. A texel occludes if this is more than the plane's.
+vec4 storedInFootprint(ShadowPoint s, vec4 stored, float base) {
+    precise vec4 above = fma(stored, vec4(s.sign), vec4(-base));
+    return above;
 }
 
 float fetchAtlas(uint atlas, float layer, ivec2 texel) {
@@ -109,15 +120,15 @@ float fetchAtlas(uint atlas, float layer, ivec2 texel) {
     }
 }
 
-// What is stored at the 2x2 texels whose first one is `texel`, in the order of textureGather.
-vec4 gatherShadowTexels(ShadowPoint s, vec2 texel) {
-    precise vec3 at = vec3((texel + 1.0) * s.atlasPerTexel, s.layer);
-    if (kShadowAtlases == 1u) return textureGather(sampler2DArray(shadowAtlas0, shadowSampler), at) * s.sign;
+// What is stored in the footprint that begins at a texel. Without the sign.
+vec4 gatherFootprint(ShadowPoint s, vec2 first) {
+    precise vec3 at = vec3((first + 1.0) * s.atlasPerTexel, s.layer);
+    if (kShadowAtlases == 1u) return textureGather(sampler2DArray(shadowAtlas0, shadowSampler), at);
     switch (s.atlas) {
-        case 0u: return textureGather(sampler2DArray(shadowAtlas0, shadowSampler), at) * s.sign;
-        case 1u: return textureGather(sampler2DArray(shadowAtlas1, shadowSampler), at) * s.sign;
-        case 2u: return textureGather(sampler2DArray(shadowAtlas2, shadowSampler), at) * s.sign;
-        default: return textureGather(sampler2DArray(shadowAtlas3, shadowSampler), at) * s.sign;
+        case 0u: return textureGather(sampler2DArray(shadowAtlas0, shadowSampler), at);
+        case 1u: return textureGather(sampler2DArray(shadowAtlas1, shadowSampler), at);
+        case 2u: return textureGather(sampler2DArray(shadowAtlas2, shadowSampler), at);
+        default: return textureGather(sampler2DArray(shadowAtlas3, shadowSampler), at);
     }
 }
 

@@ -72,8 +72,8 @@ TEST_F(Resize, MakesOnlyTheBuffersWhoseSizeChanges) {
             {"bounds", bounds, {"shadow_bounds", "shadow_bounds_cells"}},
             {"width",
              wider,
-             {"tile_light_masks", "tile_group_light_masks", "tile_depth_ranges", "tile_light_slot_ids",
-              "approximate_counts", "early_counts", "final_counts", "evaluate_tiles"}},
+             {"tile_light_masks", "tile_group_light_masks", "tile_depth_ranges", "tile_depth_slices",
+              "tile_light_slot_ids", "approximate_counts", "early_counts", "final_counts", "evaluate_tiles"}},
         };
         for (const auto& c : cases) {
             SCOPED_TRACE(c.what);

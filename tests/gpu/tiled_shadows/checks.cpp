@@ -192,12 +192,14 @@ void checkQueues(const FrameResult& r) {
         if (!searched) {
             EXPECT_EQ(queue.filterCount, used ? expected[i] : 0u);
         }
-        const std::uint32_t groups = gpu::divideRoundingUp(queue.searchCount, gpu::kPairsPerSearchGroup);
-        EXPECT_EQ(queue.searchGroupCountX, gpu::kPairRowGroups);
-        EXPECT_EQ(queue.searchGroupCountY, gpu::divideRoundingUp(groups, gpu::kPairRowGroups));
+        const std::uint32_t searchGroups = gpu::divideRoundingUp(queue.searchCount, gpu::kPairsPerSearchGroup);
+        EXPECT_EQ(queue.searchGroupCountX, std::min(searchGroups, gpu::kPairRowGroups));
+        EXPECT_EQ(queue.searchGroupCountY, gpu::divideRoundingUp(searchGroups, gpu::kPairRowGroups));
         EXPECT_EQ(queue.searchGroupCountZ, 1u);
-        EXPECT_EQ(queue.filterGroupCountX, gpu::kPairRowGroups);
-        EXPECT_EQ(queue.filterGroupCountY, gpu::divideRoundingUp(queue.filterCount, gpu::kPairRowGroups));
+        const std::uint32_t perGroup = r.subgroupSize < gpu::kWorkGroupSize ? gpu::kMostPairsPerFilterGroup : 1u;
+        const std::uint32_t filterGroups = gpu::divideRoundingUp(queue.filterCount, perGroup);
+        EXPECT_EQ(queue.filterGroupCountX, std::min(filterGroups, gpu::kPairRowGroups));
+        EXPECT_EQ(queue.filterGroupCountY, gpu::divideRoundingUp(filterGroups, gpu::kPairRowGroups));
         EXPECT_EQ(queue.filterGroupCountZ, 1u);
     }
 }
@@ -230,7 +232,7 @@ void checkCounters(const FrameResult& r, const CheckOptions& options) {
         } else {
             EXPECT_EQ(sums.evaluate, c.visibilitySlots - given);
         }
-        EXPECT_EQ(r.evaluateTiles[0], gpu::kEvaluateRowTiles);
+        EXPECT_EQ(r.evaluateTiles[0], std::min(sums.evaluateTiles, gpu::kEvaluateRowTiles));
         EXPECT_EQ(r.evaluateTiles[1], gpu::divideRoundingUp(sums.evaluateTiles, gpu::kEvaluateRowTiles));
         EXPECT_EQ(r.evaluateTiles[2], 1u);
         EXPECT_EQ(r.evaluateTiles[3], sums.evaluateTiles);
@@ -277,7 +279,11 @@ Checked checkFrame(const FrameInput& input, const FrameResult& result, const Che
     checkAnswer(all, camera, result);
     expectNone(checkGpuLights(all, camera, result.lights), "lights");
     out.lights = orderLights(all, result.lights);
-    if (options.depths) expectNone(checkTileDepths(out.grid, result.depthRanges), "hierarchical depth");
+    if (options.depths) {
+        expectNone(checkTileDepths(out.grid, result.depthRanges), "hierarchical depth");
+        if (!result.settings.hostDepthPyramid)  // which tells no slices
+            expectNone(checkTileSlices(out.grid, result.depthRanges, result.depthSlices), "depth slices");
+    }
     const ShadowSettings& settings = result.settings;
     const bool byPixel = settings.lightLists == LightLists::Pixel;
     out.expected =

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "checks.h"
 #include "reference/hierarchical_depth.h"
@@ -195,6 +196,43 @@ TEST_P(ListsTest, HostDepthPyramid) {
         EXPECT_GT(checked.early.must, 0u);
         input.lights.clear();
         checkFrame(input, rig.run(input), options);
+    }
+}
+
+// Every tile has pixels at 2 m and at 10 m, and nothing between. A light in the gap reaches its froxel, but no pixel:
+// no list has it. Lights that touch either surface are listed.
+TEST_P(ListsTest, LightsBetweenTwoSurfacesAreLeftOut) {
+    RoomSetup setup{.seed = 6};
+    setup.camera.eye = {0, 0, 0};
+    setup.camera.target = {0, 0, -1};
+    for (const LightLists by : {LightLists::Froxel, LightLists::Pixel}) {
+        FrameInput input = makeQuickFrame(setup);
+        input.settings.lightLists = by;
+        for (std::size_t i = 0; i < input.receivers.depth.size(); ++i)
+            input.receivers.depth[i] = static_cast<float>(setup.camera.nearMetres / (i % 2 == 0 ? 2.0 : 10.0));
+        Light light;
+        light.rangeMetres = 1.0f;
+        light.casts = false;
+        input.lights.assign(3, light);
+        const float depths[] = {6.0f, 2.5f, 9.5f};
+        for (std::size_t i = 0; i < 3; ++i) input.lights[i].position[2] = -depths[i];
+        input.lightViews.clear();
+        Rig rig(device(), {}, viewDescFor(input));
+        ASSERT_TRUE(rig.ok());
+        const FrameResult result = rig.run(input);
+        checkFrame(input, result);
+        std::size_t listed[3] = {};
+        for (std::size_t tile = 0; tile < result.slotIds.size(); ++tile) {
+            EXPECT_EQ(result.depthSlices[tile], 0x80000001u);
+            for (const std::uint32_t i : earlyLights(result.lists(), tile)) ++listed[result.lights[i].hostIndex];
+        }
+        EXPECT_EQ(listed[0], 0u);
+        EXPECT_GT(listed[1], 0u);
+        EXPECT_GT(listed[2], 0u);
+        const std::uint32_t approximate =
+            std::accumulate(result.approximateCounts.begin(), result.approximateCounts.end(), 0u);
+        EXPECT_LT(approximate, 2 * result.slotIds.size());
+        EXPECT_GE(approximate, listed[1] + listed[2]);
     }
 }
 

@@ -13,21 +13,11 @@ using renderer::ImageDesc;
 constexpr std::uint32_t kExtraX = 24, kExtraY = 16;  // pixels of the images beyond the view
 constexpr Access kAll{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
 constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-constexpr const char* kDeviceBuffers[] = {"tile_group_light_masks",
-                                          "tile_depth_ranges",
-                                          "tile_light_slot_ids",
-                                          "approximate_counts",
-                                          "early_light_list",
-                                          "early_counts",
-                                          "final_light_list",
-                                          "final_counts",
-                                          "visibility",
-                                          "evaluate_tiles",
-                                          "counters",
-                                          "list_tiles",
-                                          "pair_queues",
-                                          "queued_pairs",
-                                          "shadow_bounds"};
+constexpr const char* kDeviceBuffers[] = {
+    "tile_group_light_masks", "tile_depth_ranges", "tile_depth_slices", "tile_light_slot_ids", "approximate_counts",
+    "early_light_list",       "early_counts",      "final_light_list",  "final_counts",        "visibility",
+    "evaluate_tiles",         "counters",          "list_tiles",        "pair_queues",         "queued_pairs",
+    "shadow_bounds"};
 
 void barrier(VkCommandBuffer commands, Access before, Access after) {
     VkMemoryBarrier2 all{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
@@ -133,6 +123,7 @@ Rig::Rig(TestDevice& device, const Context& context, const ViewDesc& desc) : dev
 }
 
 void Rig::create(const Context& context) {
+    subgroupSize_ = context.subgroupSize();
     desc_.guardBytes = kGuardBytes;
     const Result made = View::create(context, desc_, view_);
     EXPECT_TRUE(made.ok()) << made.message();
@@ -331,6 +322,7 @@ void Rig::decode(FrameResult& r) const {
     const std::vector<std::uint32_t> ranges = perTile("tile_depth_ranges", 2 * tiles);
     r.depthRanges.resize(ranges.size());
     std::memcpy(r.depthRanges.data(), ranges.data(), ranges.size() * 4);
+    r.depthSlices = perTile("tile_depth_slices", tiles);
     r.groupMasks = perTile("tile_group_light_masks", std::size_t(r.constants.tileGroupCounts.x) *
                                                          r.constants.tileGroupCounts.y * gpu::kLightMaskEntryWords);
     r.slotIds = perTile("tile_light_slot_ids", tiles);
@@ -348,6 +340,7 @@ void Rig::decode(FrameResult& r) const {
     r.shadowBounds.resize(bounds.size() / 2);
     std::memcpy(r.shadowBounds.data(), bounds.data(), bounds.size() * 4);
     r.listCapacity = view_->memory().listEntries;
+    r.subgroupSize = subgroupSize_;
     r.settings = settings_;
     // The pool counts slots of its own bits.
     r.slotCapacity = view_->memory().visibilitySlots * desc_.visibilityBits / settings_.visibilityBits;

@@ -48,7 +48,7 @@ struct FrameResult {
     gpu::GpuFrame constants{};
     std::vector<gpu::GpuLight> lights;
     std::vector<float> depthRanges;
-    std::vector<std::uint32_t> tileLightMasks;
+    std::vector<std::uint32_t> depthSlices, tileLightMasks;
     std::vector<std::uint32_t> groupMasks, slotIds, approximateCounts, earlyList, earlyCounts, finalList, finalCounts,
         visibility, evaluateTiles;  ///< per-tile ones: of the active tiles, the others whole
     std::vector<std::uint32_t> listTiles, queuedPairs;
@@ -58,7 +58,7 @@ struct FrameResult {
     FrameStatistics statistics;
     bool hasStatistics = false;
     std::vector<TimelineRow> rows;
-    std::uint32_t listCapacity = 0, slotCapacity = 0;
+    std::uint32_t listCapacity = 0, slotCapacity = 0, subgroupSize = 0;
     std::size_t brokenGuards = 0;  ///< words outside the contents of a buffer that are no longer kCanary
     std::size_t beyondTiles = 0;   ///< words of per-tile arrays beyond the active tiles, likewise
     ShadowSettings settings;
@@ -122,6 +122,7 @@ private:
     TestDevice& device_;
     ViewDesc desc_;
     std::unique_ptr<View> view_;
+    std::uint32_t subgroupSize_ = 0;
     std::unique_ptr<Timeline> timeline_;
     PreparedLights answer_;
     std::vector<LightShadowViews> views_;  // of the answer's lights

@@ -196,9 +196,9 @@ TEST(Settings, TheHostsFilterNeedsItsShader) {
     ASSERT_TRUE(Context::create(desc, context));
     ASSERT_TRUE(context->prepare(settings));
     // The pipelines of the host's queues are the host's, one for each kind of shadow views, and made last.
-    ASSERT_EQ(vulkan.pipelines.size(), 10u);
-    for (std::size_t i = 0; i < 10; ++i)
-        EXPECT_EQ(vulkan.pipelines[i].spirvBytes == sizeof(words), i >= 7) << "pipeline " << i;
+    ASSERT_EQ(vulkan.pipelines.size(), 9u);
+    for (std::size_t i = 0; i < 9; ++i)
+        EXPECT_EQ(vulkan.pipelines[i].spirvBytes == sizeof(words), i >= 6) << "pipeline " << i;
 }
 
 // Each member tells settings apart, and pipelines are shared by settings that their shaders cannot tell apart.
@@ -208,7 +208,7 @@ TEST(Settings, EqualSettingsHaveEqualPipelines) {
     ASSERT_TRUE(Context::create(vulkan.desc(), context));
     const ShadowSettings first;
     ASSERT_TRUE(context->prepare(first));
-    const std::uint32_t ofFirst = 9;  // filter_pairs three times, no filter_tiles and no search_pairs
+    const std::uint32_t ofFirst = 8;  // filter_pairs three times; no phase 3, no filter_tiles and no search_pairs
     EXPECT_EQ(context->pipelineCount(), ofFirst);
     ASSERT_TRUE(context->prepare(first));
     EXPECT_EQ(context->pipelineCount(), ofFirst);
@@ -216,22 +216,33 @@ TEST(Settings, EqualSettingsHaveEqualPipelines) {
         std::function<void(ShadowSettings&)> change;
         std::uint32_t pipelines;
     } changes[] = {
-        {[](ShadowSettings& s) { s.filters = only(Filter::Pcf); }, 2},         // classify_pairs, filter_tiles
+        {[](ShadowSettings& s) { s.filters = only(Filter::Pcf); }, 1},         // filter_tiles
         {[](ShadowSettings& s) { s.filters = only(Filter::PcssShared); }, 7},  // classify_pairs, and two three times
         {[](ShadowSettings& s) { s.filters |= only(Filter::Pcf); }, 1},        // classify_pairs: the others are there
-        {[](ShadowSettings& s) { s.filters = 0; }, 2},                         // classify_pairs, filter_tiles
-        {[](ShadowSettings& s) { s.pcfRadius = 2; }, 3},
+        {[](ShadowSettings& s) { s.filters = 0; }, 1},                         // filter_tiles
+        {[](ShadowSettings& s) { s.pcfRadius = 2; }, 0},                       // no filter asks it
+        {[](ShadowSettings& s) {
+             s.filters = only(Filter::Pcf);
+             s.pcfRadius = 2;
+         },
+         1},
+        {[](ShadowSettings& s) {
+             s.filters = only(Filter::Pcf);
+             s.pcfRadius = 2;
+             s.pcssPresetCount = 3;  // no filter asks it
+         },
+         0},
         {[](ShadowSettings& s) { s.pcssPresets[0] = kPcssHigh; }, 0},  // constants of the frame
         {[](ShadowSettings& s) { s.pcssPresetCount = 2; }, 3},
         {[](ShadowSettings& s) { s.patternPerFrame = true; }, 0},
         {[](ShadowSettings& s) { s.shadowBounds = true; }, 0},
-        {[](ShadowSettings& s) { s.depthBias = DepthBias::Unbiased; }, 4},
-        {[](ShadowSettings& s) { s.facedAwayIsDark = false; }, 4},
+        {[](ShadowSettings& s) { s.depthBias = DepthBias::Unbiased; }, 3},
+        {[](ShadowSettings& s) { s.facedAwayIsDark = false; }, 3},
         {[](ShadowSettings& s) { s.dropLightsFacedAway = false; }, 0},
         {[](ShadowSettings& s) { s.subsurfaceBiasMetres = 0.0f; }, 0},
         {[](ShadowSettings& s) { s.visibilityBits = 4; }, 3},
-        {[](ShadowSettings& s) { s.lightLists = LightLists::Pixel; }, 1},
-        {[](ShadowSettings& s) { s.listReservation = ListReservation::Approximate; }, 2},
+        {[](ShadowSettings& s) { s.lightLists = LightLists::Pixel; }, 2},
+        {[](ShadowSettings& s) { s.listReservation = ListReservation::Approximate; }, 1},
         {[](ShadowSettings& s) { s.hostDepthPyramid = true; }, 1},
     };
     std::uint32_t expected = ofFirst;
@@ -321,7 +332,7 @@ TEST(Settings, FramesMakePipelinesOfTheirLightsAlone) {
         EXPECT_EQ(context->pipelineCount(), expected) << what;
     };
     for (Light& light : host.lights) light.filter = Filter::Hard;
-    begin("hard shadows go by tile", 7);
+    begin("hard shadows go by tile", 6);
     host.lights[0].filter = Filter::Pcss;
     begin("a spot", 1);
     host.lights[1].filter = Filter::Pcss;
@@ -333,7 +344,7 @@ TEST(Settings, FramesMakePipelinesOfTheirLightsAlone) {
     begin("a spot, with a search", 2);
     begin("the same again", 0);
     ASSERT_TRUE(context->prepare(host.frame.settings));
-    EXPECT_EQ(context->pipelineCount(), 7u + 3u + 6u);
+    EXPECT_EQ(context->pipelineCount(), 6u + 3u + 6u);
 }
 
 }  // namespace

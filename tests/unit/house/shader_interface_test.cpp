@@ -76,7 +76,8 @@ std::vector<MemberLayout> gpuPcssTaps() {
 }
 
 std::vector<MemberLayout> gpuPcssTap() {
-    return {MEMBER(GpuPcssTap, filtered), MEMBER(GpuPcssTap, searched)};
+    return {MEMBER(GpuPcssTap, filtered),  MEMBER(GpuPcssTap, searched),  MEMBER(GpuPcssTap, squared),
+            MEMBER(GpuPcssTap, reserved0), MEMBER(GpuPcssTap, reserved1), MEMBER(GpuPcssTap, reserved2)};
 }
 
 // Members of an array's elements, behind each other.
@@ -221,6 +222,7 @@ const Blocks& libraryBlocks() {
         Blocks blocks = sharedBlocks();
         blocks[{kSetWorking, kBindCounters}] = {structAt(0, gpuCounters())};
         blocks[{kSetWorking, kBindApproximateCounts}] = {arrayAt(0, 4, {memberAt<uint>(0)})};
+        blocks[{kSetWorking, kBindTileDepthSlices}] = {arrayAt(0, 4, {memberAt<uint>(0)})};
         blocks[{kSetWorking, kBindShadowBoundsCells}] = {
             arrayAt(0, sizeof(GpuShadowBoundsCell), gpuShadowBoundsCell())};
         blocks[{kSetWorking, kBindListTiles}] = {arrayAt(0, 4, {memberAt<uint>(0)})};
@@ -485,7 +487,10 @@ std::vector<Made> madeFor(const std::vector<std::uint32_t>& values) {
     for (std::uint32_t id = 0; id < kPassCount; ++id) {
         if (id == kPassSearchPairs || id == kPassFilterPairs) continue;
         out.push_back({static_cast<PassId>(id), values});
-        if (id == kPassFilterTiles) out.back().values[kSpecFilters] = 1u << kFilterHard;
+        if (id == kPassFilterTiles) {
+            out.back().values[kSpecFilters] = 1u << kFilterPcf;
+            out.back().values[kSpecPcssPresets] = 1;  // no filter of this pass asks it
+        }
     }
     for (const std::uint32_t filter : {kFilterPcss, kFilterPcssShared}) {
         for (const std::uint32_t kind : {kShadowViewsOne, kShadowViewsSixFaces, kShadowViewsCascades}) {
@@ -493,6 +498,7 @@ std::vector<Made> madeFor(const std::vector<std::uint32_t>& values) {
                 if (pass == kPassSearchPairs && filter != kFilterPcssShared) continue;
                 out.push_back({pass, values});
                 out.back().values[kSpecFilters] = 1u << filter;
+                out.back().values[kSpecPcfRadius] = 1;  // likewise
                 out.back().values[kSpecShadowViews] = kind;
             }
         }
@@ -509,7 +515,7 @@ TEST(ShaderInterface, PipelinesGetTheConstants) {
     std::unique_ptr<Context> context;
     ASSERT_TRUE(Context::create(desc, context));
     ShadowSettings settings;
-    settings.filters = only(Filter::Hard) | only(Filter::Pcss) | only(Filter::PcssShared);
+    settings.filters = only(Filter::Pcf) | only(Filter::Pcss) | only(Filter::PcssShared);
     settings.lightLists = LightLists::Pixel;
     settings.listReservation = ListReservation::Approximate;
     settings.pcfRadius = 3;
@@ -520,7 +526,7 @@ TEST(ShaderInterface, PipelinesGetTheConstants) {
     settings.facedAwayIsDark = true;
     std::vector<std::uint32_t> expected(kSpecCount);
     expected[kSpecSubgroupSize] = 64;
-    expected[kSpecFilters] = 1u << kFilterHard | 1u << kFilterPcss | 1u << kFilterPcssShared;
+    expected[kSpecFilters] = 1u << kFilterPcf | 1u << kFilterPcss | 1u << kFilterPcssShared;
     expected[kSpecListReservation] = kReserveApproximate;
     expected[kSpecPcfRadius] = 3;
     expected[kSpecHostDepthPyramid] = 1;

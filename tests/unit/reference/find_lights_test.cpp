@@ -224,10 +224,11 @@ TEST_F(Frame, TilesWithoutSpaceMustBeEvaluated) {
     EXPECT_TRUE(report.findings.ok()) << report.findings.text();
     EXPECT_EQ(report.tilesWithoutSpace, 1u);
     const auto coordinates = static_cast<std::uint32_t>(tile / spoilt.tilesX << 16 | tile % spoilt.tilesX);
-    EXPECT_TRUE(checkEvaluateTiles(spoilt.view(), std::vector<std::uint32_t>{1024, 1, 1, 1, coordinates}).ok());
-    EXPECT_FALSE(checkEvaluateTiles(spoilt.view(), std::vector<std::uint32_t>{1024, 1, 1, 1, coordinates + 1}).ok());
-    EXPECT_FALSE(checkEvaluateTiles(spoilt.view(), std::vector<std::uint32_t>{1024, 2, 1, 1, coordinates}).ok());
-    EXPECT_FALSE(checkEvaluateTiles(spoilt.view(), std::vector<std::uint32_t>{1024, 0, 1, 0, coordinates}).ok());
+    EXPECT_TRUE(checkEvaluateTiles(spoilt.view(), std::vector<std::uint32_t>{1, 1, 1, 1, coordinates}).ok());
+    EXPECT_FALSE(checkEvaluateTiles(spoilt.view(), std::vector<std::uint32_t>{1, 1, 1, 1, coordinates + 1}).ok());
+    EXPECT_FALSE(checkEvaluateTiles(spoilt.view(), std::vector<std::uint32_t>{1, 2, 1, 1, coordinates}).ok());
+    EXPECT_FALSE(checkEvaluateTiles(spoilt.view(), std::vector<std::uint32_t>{1024, 1, 1, 1, coordinates}).ok());
+    EXPECT_FALSE(checkEvaluateTiles(spoilt.view(), std::vector<std::uint32_t>{1, 1, 1, 0, coordinates}).ok());
 }
 
 }  // namespace
